@@ -9,6 +9,7 @@ module vcor_solver
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
+   use vcor_solver_tuning, only : layer_fallback
    use vcor_solver_type, only : default_accuracy, method_for, solve_by => solve_impact, &
       solver_settings_t, solver_t
    implicit none
@@ -19,7 +20,8 @@ module vcor_solver
 
    !> The method `auto`: internal variables, and product integration if they fail. They fail if no
    !> sum of exponentials represents the kernel: for a table whose data begin long after the end of
-   !> the contact, for some pairs, and for exponents near a limit
+   !> the contact, for some pairs, and for exponents near a limit; and if a receding contact grows
+   !> again
    type, extends(solver_t) :: auto_t
       !> First method
       type(ive_t) :: ive
@@ -204,17 +206,21 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(error_t), allocatable :: failure
+      type(product_t) :: product
 
       call self%ive%solve(impact, trajectory, error)
       ! for a layer product integration takes seconds, and its error estimate says less
-      if (impact%plate%layered()) return
+      if (impact%plate%layered() .and. .not. trajectory%regrows) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
       else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
          return
       end if
-      call self%product%solve(impact, trajectory, error)
+      product = self%product
+      if (impact%plate%layered()) &
+         product%settings%accuracy = max(product%settings%accuracy, layer_fallback)
+      call product%solve(impact, trajectory, error)
       if (.not. allocated(failure)) return
       if (allocated(error)) return
       ! running out of steps says nothing about a contact without a given end

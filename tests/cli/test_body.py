@@ -194,7 +194,8 @@ def test_a_footprint_within_the_contact(vcor, footprint):
 
 
 def test_growth_that_comes_slowly(vcor):
-    """Where t1 comes to a rest and rises, a rebound that is cut short of that says so in the end."""
+    """Where t1 comes to a rest and rises, a rebound that is cut short of that says so in the end; auto goes on, but
+    not for ever."""
     vcor.write(
         "&impact velocity = 0.0354629 /\n&sphere radius = 0.00105814, material = 'ball' /\n"
         "&plate material = 'plate', waves = 'body', half_thickness = 4.91884e-5 /\n&contact law = 'receding' /\n"
@@ -205,8 +206,11 @@ def test_growth_that_comes_slowly(vcor):
         "equilibrium_modulus = 5.45044e6, relaxing_modulus = 2.01084e7, beta = 25.1028 /\n"
     )
     for accuracy in ("1e-5", "1e-6", "1e-7"):
-        done = vcor("run", "case.nml", "--print", "cor", "--set", f"solver.accuracy={accuracy}")
-        assert done.code == NUMERICAL and "grows again" in done.err
+        words = ["--set", f"solver.accuracy={accuracy}", "--set", "solver.method=ive"]
+        done = vcor("run", "case.nml", "--print", "cor", *words)
+        assert done.code == NUMERICAL and "grows again" in done.err and "method = 'direct'" in done.err
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and "grows again" in done.err and "lasts for more steps" in done.err
 
 
 def test_growth_known_no_better_than_its_material(vcor):
@@ -218,8 +222,29 @@ def test_growth_known_no_better_than_its_material(vcor):
         "&material name = 'plate', density = 1164.89, poisson_ratio = 0.375743, model = 'table', "
         f"file = '{ROOT / 'tests' / 'reference' / 'table.csv'}' /\n"
     )
-    done = vcor("run", "case.nml", "--print", "cor")
+    done = vcor("run", "case.nml", "--print", "cor", "--set", "solver.method=ive")
     assert done.code == NUMERICAL and "seems to grow again" in done.err and "method = 'direct'" in done.err
+
+
+def test_growth_on_a_layer(vcor):
+    """auto follows a contact that grows again on a layer by direct, and the error that it states holds against half
+    the step."""
+    vcor.write(
+        "&impact velocity = 21.39 /\n&sphere radius = 0.00745, material = 'ball' /\n"
+        "&plate material = 'plate', waves = 'body', half_thickness = 1.676e-3 /\n"
+        "&contact law = 'receding', pair = 'series' /\n&material name = 'ball', density = 1100.0, poisson_ratio = 0.35, "
+        "model = 'elastic', modulus = 2.39e9 /\n&material name = 'plate', density = 1100.0, poisson_ratio = 0.0424, "
+        "model = 'sls', glassy_modulus = 8.36e8, alpha = 54.6, beta = 136.6 /\n"
+    )
+    assert "grows again" in vcor("run", "case.nml", "--print", "cor", "--set", "solver.method=ive").err
+    names = "cor,cor_sphere,cor_error,cor_sphere_error,energy_imbalance,initial_energy"
+    words = ["run", "case.nml", "--print", names, "--set"]
+    rough = [float(word) for word in vcor.succeeds(*words, "solver.accuracy=1e-3").split()]
+    half = ["solver.method=direct", "--set", "solver.time_step=2e-7"]
+    fine = [float(word) for word in vcor.succeeds(*words, *half).split()]
+    assert abs(rough[0] - fine[0]) <= rough[2] + fine[2] < 2e-3
+    assert abs(rough[1] - fine[1]) <= rough[3] + fine[3] < 2e-4
+    assert abs(fine[4]) <= 1e-6 * fine[5]
 
 
 def test_glassy_modulus_that_lasts_for_no_time(vcor):

@@ -51,6 +51,8 @@ module vcor_impact_trajectory
    type :: trajectory_t
       !> One of the `contact_*` constants
       integer :: status = contact_lasting
+      !> Whether a receding contact has grown again
+      logical :: regrows = .false.
       !> Number of time steps taken
       integer :: steps = 0
       !> Node at which contact or computation ended

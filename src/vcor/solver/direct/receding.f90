@@ -6,13 +6,16 @@
 !> doi:10.1016/0022-5096(60)90028-4. With s a parabola over each step the condition is summed up
 !> from the newest step backwards until it changes its sign, in the step that t1 lies in; there the
 !> kernel is integrated over a part of the step. The newest indentation and velocity depend on the
-!> force, s_n = s_0 - a F and s'_n = v_0 - b F, so force and t1 are found together.
+!> force, s_n = s_0 - a F and s'_n = v_0 - b F, so force and t1 are found together. A contact that
+!> grows again is beyond this condition, and followed spring by spring from there on.
 module vcor_solver_direct_receding
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : lengthen
+   use vcor_solver_direct_springs, only : springs_t
    use vcor_solver_direct_weights, only : contact_kernel_t
+   use vcor_solver_tuning, only : most_work
    implicit none
    private
 
@@ -25,8 +28,13 @@ module vcor_solver_direct_receding
    type :: receding_t
       !> Whether the contact shrinks
       logical :: shrinks = .false.
-      !> Whether it has begun to grow again, which is beyond this law
+      !> Whether it has begun to grow again in the last step
       logical :: regrows = .false.
+      !> Whether it has, and the springs are followed
+      logical :: regrown = .false.
+      !> The springs, and t1 over the time step where it began to
+      type(springs_t) :: springs
+      real(wp), private :: smallest = 0.0_wp
       !> t1 over the time step at the last three nodes, the newest last; beyond the end of contact
       !> negative
       real(wp) :: t1(3) = 0.0_wp
@@ -34,6 +42,8 @@ module vcor_solver_direct_receding
       real(wp) :: force = 0.0_wp
       !> Step in which t1 lies
       integer, private :: step = 0
+      !> Node up to which the contact has grown
+      integer, private :: turn = 0
       !> Indentation at the nodes [m], shape (0:)
       real(wp), allocatable, private :: s(:)
       !> Its differences [m]; that of the first step stands for the one before
@@ -69,6 +79,7 @@ contains
       self%ds(n) = s - self%s(n - 1)
       if (.not. self%shrinks) then
          self%step = n
+         self%turn = n
          self%t1 = real(n, wp)
       end if
    end subroutine accept
@@ -76,6 +87,46 @@ contains
    !> Force at node n, t1 with it. If t1 is found to lie in the newest step, nothing is: the contact
    !> still grows
    subroutine find_force(self, impact, kernel, n, du, indentation, velocity)
+      class(receding_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      type(contact_kernel_t), intent(in) :: kernel
+      !> Node
+      integer, intent(in) :: n
+      !> Differences of u, shape (>= n - 1)
+      real(wp), contiguous, intent(in) :: du(:)
+      !> s_0 [m] and a [m/N]
+      real(wp), intent(in) :: indentation(2)
+      !> v_0 [m/s] and b [m/(N s)]
+      real(wp), intent(in) :: velocity(2)
+
+      real(wp) :: last(2)
+      logical :: grew
+
+      last = self%t1(2:3)
+      grew = last(2) > last(1) + rounding
+      if (.not. self%regrown) then
+         call follow_edge(self, impact, kernel, n, du, indentation, velocity)
+         ! on a plate at rest, without weight, s' only falls: what grows there is rounding
+         if (.not. (self%regrows .and. (impact%plate%moves() .or. impact%gravity > 0.0_wp))) return
+         self%regrown = .true.
+         self%smallest = last(2)
+         call self%springs%start(impact, kernel, n - 1, self%turn, self%s, self%ds)
+         if (self%springs%work > most_work) return
+      end if
+      self%t1(1:2) = last
+      call self%springs%find_force(impact, kernel, n, self%s(n - 1), self%ds, indentation, &
+         self%force, self%t1(3))
+      self%regrows = self%t1(3) > last(2) + rounding .and. .not. grew
+      ! what was never released does not remember that the contact has grown again. The step behind
+      ! that of t1 is free for sure
+      if (self%t1(3) > 0.0_wp .and. ceiling(self%t1(3)) + 1 < floor(self%smallest)) then
+         self%regrown = .false.
+         self%step = ceiling(self%t1(3)) + 1
+      end if
+   end subroutine find_force
+
+   !> Force and t1 at node n by the condition, as long as the contact has not grown again
+   subroutine follow_edge(self, impact, kernel, n, du, indentation, velocity)
       class(receding_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(contact_kernel_t), intent(in) :: kernel
@@ -128,7 +179,7 @@ contains
          call find_in_step(self, impact%law, kernel, n, m, du, known, per_force)
       end if
       self%regrows = self%t1(3) > self%t1(2) + rounding
-   end subroutine find_force
+   end subroutine follow_edge
 
    !> Find t1 in step m by the Illinois method, and the force with it
    subroutine find_in_step(self, law, kernel, n, m, du, known, per_force)
