@@ -323,7 +323,8 @@ contains
                 panel%time(j:n)))) self%excess = huge(1.0_wp)
          end do
          if (trajectory%status /= contact_separated .and. .not. (self%ends .or. self%recedes)) then
-            if (hides_a_zero(collocator%rule, panel)) self%excess = huge(1.0_wp)
+            if (hides_a_zero(collocator%rule, panel, rounding_of_force*self%largest_force)) &
+               self%excess = huge(1.0_wp)
          end if
       end associate
    end subroutine judge

@@ -41,9 +41,11 @@ contains
 
    !> Whether the force is zero between two stages but positive again at the second, as for a sphere
    !> that its weight almost keeps in contact: the panel is too long to show the end
-   pure function hides_a_zero(rule, panel) result(hides)
+   pure function hides_a_zero(rule, panel, noise) result(hides)
       type(collocation_t), intent(in) :: rule
       type(panel_t), intent(in) :: panel
+      !> Rounding in the force [N]
+      real(wp), intent(in) :: noise
       logical :: hides
 
       real(wp) :: slope(0:width), growth(0:width), lowest
@@ -57,7 +59,7 @@ contains
          if (.not. (panel%force(j - 1) > 0.0_wp .and. growth(j - 1) < 0.0_wp)) cycle
          if (.not. (slope(j - 1) < 0.0_wp .and. slope(j) > 0.0_wp)) cycle
          lowest = rule%crossing(slope, rule%point(j - 1), rule%point(j), rounding)
-         hides = .not. rule%interpolate(panel%force, lowest) > 0.0_wp
+         hides = rule%interpolate(panel%force, lowest) < -noise
          if (hides) return
       end do
    end function hides_a_zero
