@@ -31,7 +31,7 @@ module vcor_app_fit
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Message about systematic misfits
-   character(len=*), parameter :: no_noise = 'the model does not follow the data: its misfits ' &
+   character(len=*), parameter :: systematic = 'the model does not follow the data: its misfits ' &
       //'are no noise'
 
    !> Poisson's ratio if none is given: that of rubber, which is incompressible
@@ -62,7 +62,7 @@ contains
       character(len=:), allocatable :: source, place, note, path, group, remarks, tail
       real(wp) :: density, poisson_ratio
 
-      call check_wish(request, error)
+      call check_options(request, error)
       if (allocated(error)) return
       if (allocated(request%source)) then
          source = request%source
@@ -106,7 +106,7 @@ contains
       if (allocated(request%json)) then
          if (same_file(request%json, path)) call raise(error, error_usage, &
             '--json and --output are the same file '//printable(path))
-         if (.not. allocated(error)) call keep_what_was_read(request%json, source, sampled, error)
+         if (.not. allocated(error)) call refuse_input_file(request%json, source, sampled, error)
          if (.not. allocated(error)) call make_directory(folder_of(request%json), error)
          if (.not. allocated(error)) &
             call write_file(request%json, fit_json(fit, samples, group), error)
@@ -123,7 +123,7 @@ contains
    end subroutine fit_data
 
    !> Check that the options of fit are compatible
-   subroutine check_wish(request, error)
+   subroutine check_options(request, error)
       type(request_t), intent(in) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -153,7 +153,7 @@ contains
                .or. request%range%points > 0 .or. size(request%settings) > 0)) then
          call raise(error, error_usage, '--from, --to, --points and --set are for --from-model')
       end if
-   end subroutine check_wish
+   end subroutine check_options
 
    !> Choose the file of the group, --output or a file in that directory, but none that was read
    subroutine choose_path(output, source, sampled, path, error)
@@ -171,7 +171,7 @@ contains
       integer :: mark
 
       path = trim(output)
-      call keep_what_was_read(path, source, sampled, error)
+      call refuse_input_file(path, source, sampled, error)
       if (allocated(error)) return
       name = path(len(folder_of(path)) + 1:)
       mark = index(name, '.', back=.true.)
@@ -185,11 +185,11 @@ contains
          call raise(error, error_usage, "unknown format '"//printable(name(mark + 1:))//"' of '" &
             //printable(path)//"'; expected .nml; the name of a folder ends with a slash")
       end if
-      if (.not. allocated(error)) call keep_what_was_read(path, source, sampled, error)
+      if (.not. allocated(error)) call refuse_input_file(path, source, sampled, error)
    end subroutine choose_path
 
    !> Refuse the name of a file that was read
-   subroutine keep_what_was_read(name, source, sampled, error)
+   subroutine refuse_input_file(name, source, sampled, error)
       !> Name of a file to be written
       character(len=*), intent(in) :: name
       !> The data file or the case
@@ -208,7 +208,7 @@ contains
       end if
       if (taken) call raise(error, error_input, printable(source)//': the fit would replace ' &
          //name//', which is read: give another name')
-   end subroutine keep_what_was_read
+   end subroutine refuse_input_file
 
    !> Name of a file without directory and ending
    pure function stem_of(path) result(stem)
@@ -409,7 +409,7 @@ contains
       if (samples%dynamic) text = text//', from '//short(samples%at(1))//' to ' &
          //short(samples%at(size(samples%at)))//' rad/s'
       text = text//nl
-      if (fit%structured) text = text//'  note: '//no_noise//', its standard errors mean ' &
+      if (fit%structured) text = text//'  note: '//systematic//', its standard errors mean ' &
          //'little'//nl
       if (shift_note(samples) /= '') text = text//'  note: '//shift_note(samples)//nl
       if (is_open(fit)) text = text//'  note: the modulus still falls where the data end: ' &
@@ -431,9 +431,9 @@ contains
          //source//nl &
          //'! rms misfit '//percent(fit%rms)//', largest ' &
          //percent(fit%largest)//place_of(fit, samples)//nl
-      if (fit%structured) text = text//'! '//no_noise//nl
+      if (fit%structured) text = text//'! '//systematic//nl
       if (is_open(fit)) text = text//'! equilibrium_modulus is not seen: 0 to ' &
-         //short(most_of(fit))//' Pa'//nl
+         //short(upper_limit(fit))//' Pa'//nl
       do i = 1, size(fit%parameters)
          associate (parameter => fit%parameters(i))
             if (parameter%state == state_bound) text = text//'! '//parameter_name(fit, i) &
@@ -456,12 +456,12 @@ contains
    end function is_open
 
    !> Upper limit of the first parameter, three standard errors above its value
-   pure function most_of(fit) result(value)
+   pure function upper_limit(fit) result(value)
       type(fit_t), intent(in) :: fit
       real(wp) :: value
 
       value = fit%parameters(1)%value + 3.0_wp*fit%parameters(1)%error
-   end function most_of
+   end function upper_limit
 
    !> Number of terms of a Prony series
    function terms_of(fit) result(text)
@@ -526,7 +526,7 @@ contains
          if (parameter%state == state_fixed) then
             text = text//'given'
          else if (i == 1 .and. is_open(fit)) then
-            text = text//'not seen: 0 to '//short(most_of(fit))
+            text = text//'not seen: 0 to '//short(upper_limit(fit))
          else
             text = text//'+- '//short(parameter%error)
             if (parameter%state == state_bound) text = text//', at its bound'

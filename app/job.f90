@@ -177,9 +177,9 @@ contains
 
       integer :: i, j
 
-      call keep_inputs(new, old)
+      call refuse_inputs(new, old)
       if (is_same .or. allocated(error)) return
-      call keep_inputs(old, new)
+      call refuse_inputs(old, new)
       do i = 1, size(new%files%writes)
          do j = 1, size(old%files%writes)
             if (allocated(error)) return
@@ -193,7 +193,7 @@ contains
    contains
 
       !> Refuse to write a file that is read
-      subroutine keep_inputs(writer, reader)
+      subroutine refuse_inputs(writer, reader)
          type(job_t), intent(in) :: writer, reader
 
          character(len=:), allocatable :: path, kind
@@ -206,7 +206,7 @@ contains
                //'would replace the '//kind//' file '//path//': give it another output.stem')
             if (allocated(error)) return
          end do
-      end subroutine keep_inputs
+      end subroutine refuse_inputs
    end subroutine refuse_clash
 
    !> The file of a case to which a name leads

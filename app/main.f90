@@ -15,7 +15,7 @@ program vcor_main
    use vcor_app_screen, only : short
    use vcor_app_signals, only : prepare_signals
    use vcor_app_sweep, only : run_sweep
-   use vcor_app_validity, only : warn_of_slips
+   use vcor_app_validity, only : warn_of_implausible
    use vcor_app_verify, only : verify_case, verify_program
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, error_usage, raise
@@ -53,7 +53,7 @@ program vcor_main
    if (.not. allocated(error)) call execute(request, error)
    call share_error(error)
    if (allocated(error)) then
-      call complain(error)
+      call print_error(error)
       flush (error_unit)
    end if
    call leave_ranks()
@@ -108,7 +108,7 @@ contains
          case ('run')
             ! all ranks run a sweep, the first one a single impact
             if (this_rank() == 0 .and. .not. request%quiet) &
-               call warn_of_slips(jobs(i)%case, jobs(i)%sweep%grid)
+               call warn_of_implausible(jobs(i)%case, jobs(i)%sweep%grid)
             if (jobs(i)%sweep%is_grid()) then
                call run_sweep(request, jobs(i), trouble)
             else if (this_rank() == 0) then
@@ -116,7 +116,7 @@ contains
             end if
             call share_error(trouble)
          case ('check')
-            call warn_of_slips(jobs(i)%case, jobs(i)%sweep%grid)
+            call warn_of_implausible(jobs(i)%case, jobs(i)%sweep%grid)
             call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
                //chosen(jobs(i)), trouble)
          case ('material')
@@ -125,19 +125,19 @@ contains
             call verify_case(jobs(i), request%quiet, trouble)
          end select
          if (.not. allocated(trouble)) cycle
-         if (allocated(error) .and. trouble%code == error_numerical) call complain(error)
+         if (allocated(error) .and. trouble%code == error_numerical) call print_error(error)
          call move_alloc(trouble, error)
          if (error%code /= error_numerical) return
       end do
    end subroutine execute
 
    !> Print an error, from the first rank only
-   subroutine complain(error)
+   subroutine print_error(error)
       type(error_t), intent(in) :: error
 
       if (this_rank() > 0) return
       write (error_unit, '(a)') 'vcor: error: '//error%message
-   end subroutine complain
+   end subroutine print_error
 
    !> Defaults that the program chooses, as comments
    function chosen(job) result(text)

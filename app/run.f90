@@ -77,7 +77,7 @@ contains
          call write_numbers(request, tables(1), trouble)
          if (.not. request%quiet) call remark(about_numbers(job%case, &
             joined(joined(uncovered(job, outcome), inexact(outcome)), &
-            measures_remark(outcome, worker%problem%around))))
+            measures_remark(outcome, worker%problem%surroundings))))
       else if (.not. request%quiet) then
          call write_screen()
       end if
@@ -103,7 +103,7 @@ contains
                //mechanics_of(job%case, exact))
             if (allocated(exact%failure)) lines = lines &
                //as_line('note: no result with exact mechanics: '//exact%failure)
-            lines = lines//measures_report(outcome, worker%problem%around)
+            lines = lines//measures_report(outcome, worker%problem%surroundings)
          end if
          if (.not. is_shown) exact%outcome = outcome_t()
          associate (course => worker%trajectory)

@@ -9,7 +9,7 @@ module vcor_app_validity
    use vcor_case_grid, only : grid_t
    use vcor_case_identified, only : find_reliance, reliance_t
    use vcor_case_problem, only : material_of_case
-   use vcor_case_plausibility, only : note_length, slips_of
+   use vcor_case_plausibility, only : implausible_numbers, note_length
    use vcor_case_unread, only : why_unread
    use vcor_constants, only : pi
    use vcor_error, only : error_t
@@ -27,7 +27,7 @@ module vcor_app_validity
    private
 
    public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
-      points_remark, about_numbers, joined, warn_of_slips, warn_of_bands, beyond_data
+      points_remark, about_numbers, joined, warn_of_implausible, warn_of_bands, beyond_data
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -36,7 +36,7 @@ contains
 
    !> Warn on stderr of implausible numbers, and note which materials are at their reference
    !> temperature because no other is given
-   subroutine warn_of_slips(case, grid)
+   subroutine warn_of_implausible(case, grid)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
 
@@ -45,7 +45,7 @@ contains
       real(wp) :: temperature
       integer :: i
 
-      call slips_of(case, grid, notes)
+      call implausible_numbers(case, grid, notes)
       do i = 1, size(notes)
          write (error_unit, '(a)') 'vcor: warning: '//trim(notes(i))
       end do
@@ -61,7 +61,7 @@ contains
             //": '"//printable(name)//"' is at its reference temperature, " &
             //real_text(temperature)//' K: there is no impact.temperature'
       end do
-   end subroutine warn_of_slips
+   end subroutine warn_of_implausible
 
    !> Mechanics of a case, as far as the impact reads them
    function mechanics_of(case, exact) result(text)
@@ -115,10 +115,10 @@ contains
 
    !> The level of an impact, a line for each measure that is not good, and one line for the good
    !> ones
-   function measures_report(outcome, around) result(text)
+   function measures_report(outcome, surroundings) result(text)
       type(outcome_t), intent(in) :: outcome
       !> Surroundings of the impact
-      type(surroundings_t), intent(in) :: around
+      type(surroundings_t), intent(in) :: surroundings
       !> Lines; the first has the level
       character(len=:), allocatable :: text
 
@@ -127,7 +127,7 @@ contains
       integer :: i, level
 
       text = '  validity: '//trim(levels(outcome%validity))//nl
-      values = judged(outcome, around)
+      values = judged(outcome, surroundings)
       good = ''
       do i = 1, size(thresholds)
          if (level_of(i, values(i)) == level_good) good = good//', '//measure_text(outcome, i)
@@ -168,7 +168,7 @@ contains
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"
             case ('needed_extent')
                words = 'waves come back from the edge at plate.extent = ' &
-                  //brief(around%extent)//' m; good from '//brief(around%extent*value &
+                  //brief(surroundings%extent)//' m; good from '//brief(surroundings%extent*value &
                   /thresholds(measure)%caution)//' m on'
             case ('deflection_ratio')
                words = 'the plate bends by '//percent(value) &
@@ -191,10 +191,10 @@ contains
    end function measures_report
 
    !> The level of an impact that is not good, and the measures, in one line
-   function measures_remark(outcome, around) result(text)
+   function measures_remark(outcome, surroundings) result(text)
       type(outcome_t), intent(in) :: outcome
       !> Surroundings of the impact
-      type(surroundings_t), intent(in) :: around
+      type(surroundings_t), intent(in) :: surroundings
       !> In words; empty if all are good or there is no result
       character(len=:), allocatable :: text
 
@@ -203,7 +203,7 @@ contains
 
       text = ''
       if (outcome%validity <= level_good) return
-      values = judged(outcome, around)
+      values = judged(outcome, surroundings)
       do i = 1, size(thresholds)
          if (level_of(i, values(i)) > level_good) text = text//', '//measure_text(outcome, i)
       end do
@@ -481,7 +481,7 @@ contains
       do i = 1, merge(1, 2, points(1) == points(2))
          call find_reliance(reliance, grid%case_at(case, points(i)), item, &
             summary%values(time)%reals(points(i)))
-         if (.not. reliance%leans) cycle
+         if (.not. reliance%relies) cycle
          if (worst_point > 0 .and. reliance%change <= worst%change) cycle
          worst = reliance
          worst_point = points(i)

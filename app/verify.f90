@@ -129,8 +129,9 @@ contains
             //' digits of cor = '//significant(comparison%compared(1)%value(attempt_first), 12, 0) &
             //' can be trusted, the best value is ' &
             //significant(comparison%compared(1)%best, 12, 0)//nl
-         if (comparison%attempts(attempt_case)%made) text = text//'  the cor of the scheme that ' &
-            //'the case asks for is off by '//short(comparison%attempts(attempt_case)%seen(1))//nl
+         if (comparison%attempts(attempt_case)%made) text = text//'  the cor of the scheme ' &
+            //'that the case asks for is off by '//short( &
+            comparison%attempts(attempt_case)%distance(1))//nl
       else
          text = text//'  verified'//nl
       end if
@@ -210,7 +211,7 @@ contains
             if (i /= attempt_case) honest = &
                merge('  honest ', '  TOO LOW', all(is_honest(this, error_of_best(comparison))))
             text = text//significant(this%outcome%cor, 11, 17)//column(this%outcome%cor_error, 9) &
-               //column(this%seen(1), 9)//column(this%imbalance(), 9)//trim(honest)//nl
+               //column(this%distance(1), 9)//column(this%imbalance(), 9)//trim(honest)//nl
          end associate
       end do
    end function attempts_text

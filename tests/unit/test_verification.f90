@@ -289,16 +289,16 @@ contains
 
       this%outcome%cor_error = 1.0e-6_wp
       this%outcome%cor_sphere_error = 4.0e-6_wp
-      this%seen = [2.0e-6_wp, 8.0e-6_wp]
+      this%distance = [2.0e-6_wp, 8.0e-6_wp]
       call check(all(is_honest(this, exact)), "twice the stated error is fine")
-      this%seen(1) = 5.0e-6_wp
+      this%distance(1) = 5.0e-6_wp
       call check(all(is_honest(this, exact) .eqv. [.false., .true.]), "five times is not")
       call check(all(is_honest(this, exact + 1.0e-6_wp)), "unless the reference is as uncertain")
-      this%seen = [2.0e-6_wp, 2.0e-5_wp]
+      this%distance = [2.0e-6_wp, 2.0e-5_wp]
       call check(all(is_honest(this, exact) .eqv. [.true., .false.]), "of cor_sphere neither")
-      this%seen = [nan(), 0.0_wp]
+      this%distance = [nan(), 0.0_wp]
       call check(all(is_honest(this, exact) .eqv. [.false., .true.]), "NaN is not")
-      this%seen = 0.0_wp
+      this%distance = 0.0_wp
       this%outcome%cor_error = nan()
       call check(all(is_honest(this, exact) .eqv. [.false., .true.]), "nor is an error of NaN")
    end subroutine test_honest

@@ -26,14 +26,14 @@ module vcor_case_identified
    public :: put_material, material_text, reliance_t, find_reliance
 
    !> Change of cor that is not reported; the solutions are ten times more accurate
-   real(wp), parameter :: little = 1.0e-4_wp
+   real(wp), parameter :: reported_change = 1.0e-4_wp
    !> Bound of the contact time, over its value, for any material beyond the data
    real(wp), parameter :: ample = 10.0_wp
 
    !> Reliance of an impact on a material beyond its data
    type :: reliance_t
       !> Whether the impact relies on it
-      logical :: leans = .false.
+      logical :: relies = .false.
       !> Index of the material
       integer :: item = 0
       !> Band of its data at the temperature of the impact [s]
@@ -161,7 +161,7 @@ contains
       other = case
       call other%set(other%address('solver', 'method'), 'direct', given=.true.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.true.)
-      call other%set(other%address('solver', 'accuracy'), 0.1_wp*little)
+      call other%set(other%address('solver', 'accuracy'), 0.1_wp*reported_change)
       call other%unset(other%address('solver', 'time_step'))
       call solve_case(other, free, error)
       if (allocated(error) .or. free%status /= contact_separated) return
@@ -176,7 +176,8 @@ contains
       reliance%held = held%cor
       if (reliance%solved) reliance%change = abs(held%cor - free%cor)
       ! a contact that ends before the data begin relies on extrapolation only, whatever the change
-      reliance%leans = reliance%change > little .or. (reliance%ends(1) .and. first > contact_time)
+      reliance%relies = reliance%change > reported_change &
+         .or. (reliance%ends(1) .and. first > contact_time)
    end subroutine find_reliance
 
 end module vcor_case_identified

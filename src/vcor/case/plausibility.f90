@@ -9,7 +9,7 @@ module vcor_case_plausibility
    implicit none
    private
 
-   public :: slips_of, note_length
+   public :: implausible_numbers, note_length
 
    !> Length of the longest note
    integer, parameter :: note_length = 400
@@ -56,7 +56,7 @@ module vcor_case_plausibility
 contains
 
    !> Notes about implausible numbers of a case
-   subroutine slips_of(case, grid, notes)
+   subroutine implausible_numbers(case, grid, notes)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
       !> Grid of the sweep
@@ -124,7 +124,7 @@ contains
          note = place//': '//name//' = '//note
          notes = [notes, note]
       end subroutine judge
-   end subroutine slips_of
+   end subroutine implausible_numbers
 
    !> Whether limits apply to a key
    pure function is_limited(limit, model, row) result(yes)

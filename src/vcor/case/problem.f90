@@ -14,7 +14,7 @@
 !>
 !> Rules for numbers that depend on each other are in the constructors of materials, contact, plate,
 !> impact and solver. Their errors name arguments, `error%about`; `explain` replaces them by keys
-!> and lines, and `has_part` tells whether a swept key is one of them.
+!> and lines, and `may_contribute` tells whether a swept key is one of them.
 module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : address_t, case_t, entry_t
@@ -42,7 +42,7 @@ module vcor_case_problem
    implicit none
    private
 
-   public :: problem_t, problem_of_case, material_of_case, solve_case, has_part
+   public :: problem_t, problem_of_case, material_of_case, solve_case, may_contribute
 
    !> Number of no change: an object that has not been made, or could not
    integer, parameter :: never = -1
@@ -81,7 +81,7 @@ module vcor_case_problem
       !> Settings of the solution
       type(solver_settings_t) :: settings
       !> Data for the measures of validity beside the impact
-      type(surroundings_t) :: around
+      type(surroundings_t) :: surroundings
       !> Material of the sphere
       type(body_t), private :: sphere
       !> Material of the plate
@@ -271,7 +271,7 @@ contains
    end subroutine explain
 
    !> Whether the value at an address may have contributed to an error
-   pure function has_part(case, address, error) result(yes)
+   pure function may_contribute(case, address, error) result(yes)
       type(case_t), intent(in) :: case
       !> Address; its element is ignored
       type(address_t), intent(in) :: address
@@ -294,7 +294,7 @@ contains
             yes = yes .or. catalogue(address%row)%name == names(i)
          end if
       end do
-   end function has_part
+   end function may_contribute
 
    !> Names of the arguments of an error
    pure function names_about(error) result(names)
@@ -419,7 +419,7 @@ contains
       if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity, &
          number_or_zero(case, self%at%footprint))
       if (allocated(error)) return
-      call look_around(self, case)
+      call update_surroundings(self, case)
       call update_solver(self, case, error)
    end subroutine update
 
@@ -443,7 +443,7 @@ contains
       if (allocated(error) .or. outcome%status /= contact_separated) return
       if (self%impact%plate%layered()) &
          outcome%footprint_effect = cor_with_larger_footprint(self) - outcome%cor
-      call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
+      call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere%material, &
          self%plate%material)
    end subroutine solve
 
@@ -477,28 +477,29 @@ contains
    end function cor_with_larger_footprint
 
    !> Update the data for the measures of validity
-   subroutine look_around(self, case)
+   subroutine update_surroundings(self, case)
       !> The problem, its materials built
       type(problem_t), intent(inout) :: self
       type(case_t), intent(in) :: case
 
       real(wp) :: yield_strength(2)
 
-      self%around%radius = case%number(self%at%radius)
-      self%around%is_sphere = case%number(self%at%surface_radius) > 0.0_wp
-      self%around%thickness = 2.0_wp*case%number(self%at%half_thickness)
-      self%around%is_layer = self%impact%plate%layered()
-      self%around%extent = case%number(self%at%extent)
-      self%around%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
-      self%around%is_weighed = self%impact%gravity > 0.0_wp
-      self%around%gravity = merge(self%impact%gravity, standard_gravity, self%around%is_weighed)
+      self%surroundings%radius = case%number(self%at%radius)
+      self%surroundings%is_sphere = case%number(self%at%surface_radius) > 0.0_wp
+      self%surroundings%thickness = 2.0_wp*case%number(self%at%half_thickness)
+      self%surroundings%is_layer = self%impact%plate%layered()
+      self%surroundings%extent = case%number(self%at%extent)
+      self%surroundings%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
+      self%surroundings%is_weighed = self%impact%gravity > 0.0_wp
+      self%surroundings%gravity = merge(self%impact%gravity, standard_gravity, &
+         self%surroundings%is_weighed)
       yield_strength = [case%number(self%at%yield_strength(1)), &
          case%number(self%at%yield_strength(2))]
       if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
       if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
-      self%around%yield_strength = yield_strength(1)
-      call self%around%follow(self%plate%material%poisson_ratio())
-   end subroutine look_around
+      self%surroundings%yield_strength = yield_strength(1)
+      call self%surroundings%follow(self%plate%material%poisson_ratio())
+   end subroutine update_surroundings
 
    !> Build contact modulus and plate of the impact
    subroutine build_contact(self, case, error)

@@ -15,7 +15,7 @@ module vcor_fit_law
    use vcor_kinds, only : wp
    use vcor_material, only : material_t, new_material
    use vcor_fit_law_problem, only : described, find_starts, has_two_shapes, law_problem_t, &
-      new_law_problem, nothing, release, set_free, unknowns_of
+      new_law_problem, negligible, release, set_free, unknowns_of
    use vcor_fit_result, only : estimate_t, fit_t, judge, mark_ends, set_errors, state_bound, &
       state_fixed, state_free
    use vcor_fit_samples, only : samples_t
@@ -109,7 +109,7 @@ contains
 
       do i = 1, size(x)
          associate (parameter => problem%parameters(problem%free(i)))
-            if (exp(x(i)) < nothing*problem%unit(problem%free(i))) then
+            if (exp(x(i)) < negligible*problem%unit(problem%free(i))) then
                parameter%value = 0.0_wp
             else if (parameter%unit == '1' .and. x(i) > problem%upper(i) - touch &
                .and. .not. problem%stated(problem%free(i))%range%upper_open) then

@@ -18,23 +18,23 @@ module vcor_fit_law_problem
    private
 
    public :: law_problem_t, new_law_problem, stated_parameters, described, set_free, release
-   public :: unknowns_of, find_starts, has_two_shapes, nothing
+   public :: unknowns_of, find_starts, has_two_shapes, negligible
 
    !> Factor by which times may lie beyond those of the data, and moduli
-   real(wp), parameter :: widest_time = 1.0e4_wp, widest_modulus = 1.0e6_wp
+   real(wp), parameter :: time_margin = 1.0e4_wp, modulus_margin = 1.0e6_wp
    !> The same for times while the error of a parameter at its bound is estimated
-   real(wp), parameter :: widest_error = 1.0e8_wp
+   real(wp), parameter :: error_margin = 1.0e8_wp
    !> Range of an exponent
    real(wp), parameter :: least_exponent = 1.0e-3_wp, most_exponent = 0.9999_wp
    !> Fraction of its `unit` below which a modulus or rate counts as 0
-   real(wp), parameter :: nothing = 1.0e-7_wp
+   real(wp), parameter :: negligible = 1.0e-7_wp
    !> Fraction of its `unit` that replaces 0 where the misfit must depend on the logarithm
-   real(wp), parameter :: little = 1.0e-3_wp
+   real(wp), parameter :: small = 1.0e-3_wp
    !> Step of the central differences, in the logarithm of a parameter: ten correct digits
    real(wp), parameter :: step = 1.0e-5_wp
 
    !> Times of the scan per decade, and the factor by which they extend beyond the data
-   real(wp), parameter :: per_decade = 4.0_wp, beyond = 1.0e2_wp
+   real(wp), parameter :: per_decade = 4.0_wp, scan_margin = 1.0e2_wp
    !> Exponents of the scan
    real(wp), parameter :: exponents(*) = [0.02_wp, 0.05_wp, 0.1_wp, 0.15_wp, 0.2_wp, 0.25_wp, &
       0.3_wp, 0.35_wp, 0.4_wp, 0.45_wp, 0.5_wp, 0.55_wp, 0.6_wp, 0.65_wp, 0.7_wp, 0.75_wp, &
@@ -56,7 +56,7 @@ module vcor_fit_law_problem
       !> Indices of the free parameters, shape (n)
       integer, allocatable :: free(:)
       !> Factor by which times may lie beyond those of the data
-      real(wp) :: widest = widest_time
+      real(wp) :: margin = time_margin
    contains
       procedure :: residuals
       procedure :: jacobian
@@ -117,10 +117,10 @@ contains
          problem%parameters%state == state_free)
       if (allocated(problem%lower)) deallocate (problem%lower, problem%upper)
       allocate (problem%lower(size(problem%free)), problem%upper(size(problem%free)))
-      shortest = problem%samples%first_time()/problem%widest
-      longest = problem%samples%last_time()*problem%widest
-      softest = minval(problem%samples%modulus)/widest_modulus
-      hardest = maxval(problem%samples%modulus)*widest_modulus
+      shortest = problem%samples%first_time()/problem%margin
+      longest = problem%samples%last_time()*problem%margin
+      softest = minval(problem%samples%modulus)/modulus_margin
+      hardest = maxval(problem%samples%modulus)*modulus_margin
       do i = 1, size(problem%free)
          k = problem%free(i)
          associate (lower => problem%lower(i), upper => problem%upper(i), &
@@ -139,7 +139,7 @@ contains
                lower = log(least_exponent)
                upper = log(most_exponent)
             end if
-            if (problem%unit(k) > 0.0_wp) lower = log(0.01_wp*nothing*problem%unit(k))
+            if (problem%unit(k) > 0.0_wp) lower = log(0.01_wp*negligible*problem%unit(k))
          end associate
       end do
    end subroutine set_free
@@ -149,7 +149,7 @@ contains
       type(law_problem_t), intent(inout) :: problem
 
       where (problem%parameters%state == state_bound) problem%parameters%state = state_free
-      problem%widest = widest_error
+      problem%margin = error_margin
       call set_free(problem)
    end subroutine release
 
@@ -159,7 +159,7 @@ contains
       !> Logarithms of the free parameters
       real(wp) :: x(size(problem%free))
 
-      x = log(max(problem%parameters(problem%free)%value, little*problem%unit(problem%free)))
+      x = log(max(problem%parameters(problem%free)%value, small*problem%unit(problem%free)))
       x = max(problem%lower, min(problem%upper, x))
    end function unknowns_of
 
@@ -300,8 +300,8 @@ contains
 
       times = [1.0_wp]
       powers = [1.0_wp]
-      first = problem%samples%first_time()/beyond
-      last = problem%samples%last_time()*beyond
+      first = problem%samples%first_time()/scan_margin
+      last = problem%samples%last_time()*scan_margin
       n = 1 + ceiling(per_decade*log10(last/first))
       do i = 1, size(problem%parameters)
          associate (parameter => problem%parameters(i), is_fixed => problem%parameters(i)%state &
@@ -332,7 +332,7 @@ contains
       real(wp), intent(out) :: cost
 
       !> Fraction of the smallest datum at which a modulus that is not needed starts
-      real(wp), parameter :: little = 1.0e-3_wp
+      real(wp), parameter :: small = 1.0e-3_wp
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
       real(wp) :: a(problem%samples%count(), 2), b(problem%samples%count()), modulus(2)
@@ -364,7 +364,7 @@ contains
          a(:, i) = 0.0_wp
       end do
       call solve_nnls(a, b, modulus)
-      modulus = max(modulus, little*minval(problem%samples%modulus))
+      modulus = max(modulus, small*minval(problem%samples%modulus))
 
       values = shape
       do i = 1, size(values)

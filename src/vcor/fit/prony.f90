@@ -28,30 +28,30 @@ module vcor_fit_prony
    !> Largest misfit that is below the accuracy of any data
    real(wp), parameter :: good_enough = 5.0e-4_wp
    !> Factor above `good_enough` from which refinement may still reach it
-   real(wp), parameter :: close = 4.0_wp
+   real(wp), parameter :: within_reach = 4.0_wp
    !> Smallest number of terms of a series whose rates are a start for another number
-   integer, parameter :: least_guide = 4
+   integer, parameter :: min_guide = 4
    !> If one more term reduces the residual to this fraction, the data are a series of that number
-   real(wp), parameter :: completes = 1.0e-3_wp
+   real(wp), parameter :: completion = 1.0e-3_wp
    !> Unsuccessful steps that end the search: a single one may be due to a poor start
-   integer, parameter :: most_in_vain = 2
+   integer, parameter :: most_failures = 2
    !> Misfit with more terms over that with fewer above which the iteration may have stopped early
-   real(wp), parameter :: halfway = 0.7_wp
+   real(wp), parameter :: stalled = 0.7_wp
    !> Factor by which the initial rates extend beyond the data
-   real(wp), parameter :: around = 4.0_wp
+   real(wp), parameter :: margin = 4.0_wp
    !> Largest number of terms
    integer, parameter :: most_terms = 60
    !> Largest number of terms per decade of the data, plus a few: t^-1/2 to 0.05 % takes 2.3
    real(wp), parameter :: terms_per_decade = 3.0_wp
-   integer, parameter :: few_more = 5
+   integer, parameter :: extra_terms = 5
    !> Relative reduction of the sum of squares that ends an iteration, in the search and at the end
    real(wp), parameter :: coarse = 1.0e-3_wp, fine = 1.0e-7_wp
    !> Maximum number of evaluations in the search and at the end
    integer, parameter :: first_patience = 60, last_patience = 300
    !> Initial modulus of a term that least squares leaves out, over the largest modulus
-   real(wp), parameter :: little = 1.0e-3_wp
+   real(wp), parameter :: initial_fraction = 1.0e-3_wp
    !> Modulus over the smallest of the samples below which a term counts as absent
-   real(wp), parameter :: nothing = 1.0e-6_wp
+   real(wp), parameter :: negligible = 1.0e-6_wp
 
 contains
 
@@ -106,7 +106,7 @@ contains
          call refine(trial, fine, last_patience)
          if (.not. is_good(trial)) exit
          ! the data are a series of this number of terms
-         if (norm2(series%misfits) < completes*norm2(trial%misfits)) exit
+         if (norm2(series%misfits) < completion*norm2(trial%misfits)) exit
          series = trial
       end do
    end subroutine shorten
@@ -117,7 +117,7 @@ contains
 
       logical :: needed(size(series%rates))
 
-      needed = series%moduli > nothing*minval(series%samples%modulus)
+      needed = series%moduli > negligible*minval(series%samples%modulus)
       if (all(needed) .or. .not. any(needed)) return
       series%rates = pack(series%rates, needed)
       series%moduli = pack(series%moduli, needed)
@@ -191,8 +191,8 @@ contains
          call start_from(series, spread_rates(guide%rates, terms))
       else
          ! equal steps over the band of the data and slightly beyond, half a step from the ends
-         associate (first => log(1.0_wp/(around*series%samples%last_time())), &
-            last => log(around/series%samples%first_time()))
+         associate (first => log(1.0_wp/(margin*series%samples%last_time())), &
+            last => log(margin/series%samples%first_time()))
             call start_from(series, first + (last - first)*[(real(2*i - 1, wp), i=1, terms)] &
                /real(2*terms, wp))
          end associate
@@ -235,7 +235,7 @@ contains
 
       call solve_moduli(series, rates)
       series%moduli = max(series%moduli, &
-         little*max(maxval(series%moduli), minval(series%samples%modulus)))
+         initial_fraction*max(maxval(series%moduli), minval(series%samples%modulus)))
    end subroutine start_from
 
    !> Search the number of terms: with growing steps while they succeed, then with halved steps
@@ -245,20 +245,20 @@ contains
 
       type(series_t) :: trial
       real(wp) :: best
-      integer :: n, most, width, in_vain
+      integer :: n, most, width, failures
       logical :: better
 
       associate (samples => spectrum%samples)
-         most = min(most_terms, (samples%count() - 2)/2, few_more &
+         most = min(most_terms, (samples%count() - 2)/2, extra_terms &
             + ceiling(terms_per_decade*log10(samples%last_time()/samples%first_time())))
       end associate
       best = huge(best)
-      in_vain = 0
+      failures = 0
       n = 1
       do
-         call try(n, better)
-         in_vain = merge(0, in_vain + 1, better)
-         if (n == most .or. in_vain == most_in_vain) exit
+         call try_terms(n, better)
+         failures = merge(0, failures + 1, better)
+         if (n == most .or. failures == most_failures) exit
          if (is_good(series)) exit
          n = min(most, n + 1 + n/4)
       end do
@@ -266,23 +266,23 @@ contains
       do while (width > 1)
          width = (width + 1)/2
          n = size(series%rates)
-         call try(n - width, better)
-         if (.not. better .and. .not. is_good(series)) call try(n + width, better)
+         call try_terms(n - width, better)
+         if (.not. better .and. .not. is_good(series)) call try_terms(n + width, better)
          if (width == 2 .and. .not. better) exit
       end do
       do
-         call try(size(series%rates) - 1, better)
+         call try_terms(size(series%rates) - 1, better)
          if (.not. better) exit
       end do
       ! one more term shows whether the data are a series of that number
       if (size(series%rates) == most) return
       call fit_terms(trial, size(series%rates) + 1, spectrum, first_patience)
-      if (norm2(trial%misfits) < completes*norm2(series%misfits)) series = trial
+      if (norm2(trial%misfits) < completion*norm2(series%misfits)) series = trial
 
    contains
 
       !> Try a number of terms
-      subroutine try(terms, better)
+      subroutine try_terms(terms, better)
          integer, intent(in) :: terms
          !> Whether it is the best one so far
          logical, intent(out) :: better
@@ -293,7 +293,7 @@ contains
          better = .false.
          if (terms < 1 .or. terms > most) return
          guided = allocated(series%rates)
-         if (guided) guided = size(series%rates) >= least_guide
+         if (guided) guided = size(series%rates) >= min_guide
          if (guided) then
             call fit_terms(trial, terms, spectrum, first_patience, series)
          else
@@ -301,10 +301,10 @@ contains
          end if
          ! refine further if the series is nearly good enough, has one term fewer, or has more terms
          ! and hardly a smaller misfit, so that its iteration may have stopped early
-         look = maxval(abs(trial%misfits)) <= close*good_enough
+         look = maxval(abs(trial%misfits)) <= within_reach*good_enough
          if (allocated(series%rates)) look = look .or. terms == size(series%rates) - 1 .or. &
             (terms > size(series%rates) &
-            .and. norm2(trial%misfits) > halfway*norm2(series%misfits))
+            .and. norm2(trial%misfits) > stalled*norm2(series%misfits))
          if (look .and. .not. is_good(trial)) call refine(trial, fine, last_patience)
          value = criterion(trial)
          ! among series that are good enough the shortest is best
@@ -313,7 +313,7 @@ contains
          if (.not. better) return
          best = value
          series = trial
-      end subroutine try
+      end subroutine try_terms
    end subroutine search
 
    !> Whether a series is as accurate as any data
@@ -376,12 +376,12 @@ contains
       if (allocated(error)) return
       call judge(fit, material, series%samples)
       call set_bounds(series, series%given < 0.0_wp)
-      x = unknowns_of(series, nothing)
+      x = unknowns_of(series, negligible)
       free = [(2*i, i=1, n), (2*i + 1, i=1, n)]
       if (series%is_free) free = [1, free]
       where (x < series%lower + touch .or. x > series%upper - touch) &
          fit%parameters(free)%state = state_bound
-      if (any(series%moduli <= nothing*minval(series%samples%modulus))) then
+      if (any(series%moduli <= negligible*minval(series%samples%modulus))) then
          call raise(error, error_numerical, 'the data do not support so many terms: take fewer, ' &
             //'or leave --terms out')
          return

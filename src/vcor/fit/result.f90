@@ -30,11 +30,11 @@ module vcor_fit_result
    !> Root mean square misfit below the accuracy of any data: numbers have three digits at best
    real(wp), parameter :: negligible = 5.0e-3_wp
    !> Root mean square misfit, a factor of two, that is too large for noise of any kind
-   real(wp), parameter :: hopeless = log(2.0_wp)
+   real(wp), parameter :: too_large = log(2.0_wp)
    !> Standard deviations above the mean that one fit in a thousand exceeds by chance
-   real(wp), parameter :: unlikely = 3.1_wp
+   real(wp), parameter :: significance = 3.1_wp
    !> Minimum excess of residuals over parameters: with fewer no correlation is significant
-   integer, parameter :: least = 5
+   integer, parameter :: min_excess = 5
 
    !> Relative change of the modulus over a decade that counts as zero: for a series the accuracy of
    !> any data, for a law, which extrapolates, more
@@ -132,7 +132,7 @@ contains
             //fit%data%model//": take fewer, by --terms or --fix, or another model")
          return
       end if
-      fit%structured = norm2(r) > hopeless*sqrt(real(size(r), wp))
+      fit%structured = norm2(r) > too_large*sqrt(real(size(r), wp))
       if (.not. fit%structured) fit%structured = is_structured(r, j(:, inner), points)
       fit%variance = sum(r**2)/real(max(1, size(r) - size(inner)), wp)
       call covariance(j, inverse, condition)
@@ -184,7 +184,7 @@ contains
       integer :: i, sequences, info
 
       yes = .false.
-      if (size(r) < size(j, 2) + least) return
+      if (size(r) < size(j, 2) + min_excess) return
       if (norm2(r) <= negligible*sqrt(real(size(r), wp))) return
       q = j
       if (size(q, 2) > 0) then
@@ -202,7 +202,7 @@ contains
       rho = dot_product(r, neighbours(r, points))/sum(r**2)
       ! storage and loss modulus may share their noise, or one of them may have nearly all of it: in
       ! both cases the variance is that of one sequence
-      yes = rho - mean > unlikely*sqrt(real(sequences, wp)*2.0_wp*(square - n*mean**2) &
+      yes = rho - mean > significance*sqrt(real(sequences, wp)*2.0_wp*(square - n*mean**2) &
          /(n*(n + 2.0_wp)))
    end function is_structured
 

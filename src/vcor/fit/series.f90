@@ -20,7 +20,7 @@ module vcor_fit_series
    !> Factors by which a modulus may lie below and above those of the samples
    real(wp), parameter :: softest = 1.0e-8_wp, hardest = 1.0e4_wp
    !> Equilibrium modulus over the smallest modulus of the samples that counts as 0
-   real(wp), parameter :: nothing = 1.0e-6_wp
+   real(wp), parameter :: negligible = 1.0e-6_wp
    !> Smallest initial equilibrium modulus over the smallest modulus of the samples
    real(wp), parameter :: seed = 1.0e-2_wp
    !> Replaces a modulus of 0 in logarithms [Pa]
@@ -169,7 +169,7 @@ contains
 
       call iterate(series, series%given < 0.0_wp)
       if (.not. series%is_free) return
-      if (series%equilibrium > nothing*minval(series%samples%modulus)) return
+      if (series%equilibrium > negligible*minval(series%samples%modulus)) return
       series%equilibrium = 0.0_wp
       call iterate(series, .false.)
 

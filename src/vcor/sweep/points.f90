@@ -21,7 +21,7 @@ module vcor_sweep_points
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, wanted
    use vcor_case_grid, only : grid_t, new_grid
-   use vcor_case_problem, only : has_part, problem_of_case, problem_t
+   use vcor_case_problem, only : may_contribute, problem_of_case, problem_t
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
@@ -71,7 +71,7 @@ module vcor_sweep_points
    !> which ranks and threads wait for each other at its end
    real(wp), parameter :: round_time = 0.2_wp
    !> Minimum points of a round per thread, so that threads end at about the same time
-   integer, parameter :: fewest = 4
+   integer, parameter :: min_points = 4
    !> Largest ratio of the length of a round to the one before
    integer, parameter :: growth = 4
    !> Largest number of points that a thread takes at once
@@ -177,7 +177,7 @@ contains
       if (.not. allocated(error)) return
       ! other values of the parameters that vary may be valid
       do i = 1, n
-         if (.not. has_part(self%case, self%grid%axes(i)%address, error)) cycle
+         if (.not. may_contribute(self%case, self%grid%axes(i)%address, error)) cycle
          deallocate (error)
          return
       end do
@@ -222,7 +222,7 @@ contains
    end subroutine solve_point
 
    !> Reason why an impact has no coefficient of restitution
-   pure function lacking(status) result(reason)
+   pure function why_no_result(status) result(reason)
       integer, intent(in) :: status
       !> In words; empty if it has one
       character(len=:), allocatable :: reason
@@ -237,7 +237,7 @@ contains
       case default
          reason = 'no result'
       end select
-   end function lacking
+   end function why_no_result
 
    !> Default number of threads: the cores that the process may use, or OMP_NUM_THREADS of the
    !> environment
@@ -304,13 +304,13 @@ contains
          pending = pack([(i, i=1, part%count())], summary%status == point_pending)
          do i = 1, part%count()
             if (any(summary%status(i) == [contact_lasting, contact_sticking])) &
-               call failures%note(part%point(i), lacking(summary%status(i)))
+               call failures%note(part%point(i), why_no_result(summary%status(i)))
          end do
       end if
       pending = from_first_rank(pending)
       allocate (workers(threads))
       done = 0
-      length = fewest*threads*rank_count()
+      length = min_points*threads*rank_count()
       do
          ! length of the next round from the first rank; a wish to stop from any rank
          agreed = [merge(length, 0, this_rank() == 0), stop_code(monitor), &
@@ -321,7 +321,7 @@ contains
          length = min(agreed(1), size(pending) - done)
          call solve_round(pending(done + 1:done + length))
          done = done + length
-         length = max(fewest*threads*rank_count(), min(growth*length, &
+         length = max(min_points*threads*rank_count(), min(growth*length, &
             int(real(length, wp)*round_time/max(clock() - start, epsilon(start)))))
       end do
       if (agreed(3) /= 0) return
@@ -383,7 +383,7 @@ contains
                if (allocated(trouble)) then
                   call failures%note(point, trouble%message)
                else
-                  call failures%note(point, lacking(outcome%status))
+                  call failures%note(point, why_no_result(outcome%status))
                end if
 !$omp end critical (vcor_failures)
             end do

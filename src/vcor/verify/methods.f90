@@ -65,7 +65,7 @@ module vcor_verify_methods
       !> Outcome, if there was no failure
       type(outcome_t) :: outcome
       !> Distances of its cor and cor_sphere from the best ones [-]
-      real(wp) :: seen(2) = 0.0_wp
+      real(wp) :: distance(2) = 0.0_wp
    contains
       procedure :: solve
       procedure :: stated
@@ -123,20 +123,21 @@ contains
       associate (first => comparison%attempts(attempt_first), &
                  own => comparison%attempts(attempt_case))
          settings = settings_of(case, 'ive')
-         call try(first, settings, impact, error)
+         call make_attempt(first, settings, impact, error)
          if (allocated(error)) return
          if (method == 'auto' .and. allocated(first%failure)) then
             ! like `auto`, use direct alone if ive fails
             comparison%two_methods = .false.
             first = attempt_t()
             settings = settings_of(case, 'direct')
-            call try(first, settings, impact, error)
+            call make_attempt(first, settings, impact, error)
          else
             ! a hundredth of the accuracy may be more than ive can reach
             settings%accuracy = max(0.01_wp*settings%accuracy, finest_accuracy)
-            call try(comparison%attempts(attempt_refined), settings, impact, error, lenient=.true.)
+            call make_attempt(comparison%attempts(attempt_refined), settings, impact, error, &
+               lenient=.true.)
          end if
-         if (.not. allocated(error)) call halve(comparison%attempts, settings, impact, error)
+         if (.not. allocated(error)) call solve_direct(comparison%attempts, settings, impact, error)
          if (allocated(error)) return
          if (method_for(method, scheme) == 'direct' .and. (comparison%two_methods &
             .or. scheme /= 'product' .or. case%given('solver', 'time_step'))) then
@@ -153,7 +154,7 @@ contains
    end subroutine compare
 
    !> Make an attempt with given settings
-   subroutine try(attempt, settings, impact, error, lenient)
+   subroutine make_attempt(attempt, settings, impact, error, lenient)
       type(attempt_t), intent(inout) :: attempt
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
@@ -169,7 +170,7 @@ contains
       if (.not. attempt%time_step > 0.0_wp) attempt%accuracy = settings%accuracy
       call new_solver(solver, settings, impact, error)
       if (.not. allocated(error)) call attempt%solve(solver, impact, error, lenient)
-   end subroutine try
+   end subroutine make_attempt
 
    !> Settings of the case for the attempts, without step, scheme or motion after separation
    function settings_of(case, method) result(settings)
@@ -194,7 +195,7 @@ contains
 
    !> Product integration with steps dt, dt/2 and dt/4. Without separation there is no number to
    !> extrapolate, and it runs once with steps of its own
-   subroutine halve(attempts, settings, impact, error)
+   subroutine solve_direct(attempts, settings, impact, error)
       !> All attempts; the first one has been made
       type(attempt_t), intent(inout) :: attempts(:)
       !> Settings except method and step
@@ -219,15 +220,15 @@ contains
          direct%time_step = impact%law%contact_time*impact%time_scale()/per_contact
       else
          direct%accuracy = default_accuracy('direct')
-         call try(attempts(attempt_halved(1)), direct, impact, error)
+         call make_attempt(attempts(attempt_halved(1)), direct, impact, error)
          return
       end if
       do i = 1, size(attempt_halved)
-         call try(attempts(attempt_halved(i)), direct, impact, error)
+         call make_attempt(attempts(attempt_halved(i)), direct, impact, error)
          if (allocated(error)) return
          direct%time_step = 0.5_wp*direct%time_step
       end do
-   end subroutine halve
+   end subroutine solve_direct
 
    !> Solve, and store a numerical failure
    subroutine solve(self, solver, impact, error, lenient)
@@ -283,12 +284,12 @@ contains
    end function imbalance
 
    !> Store an objection if it is the first
-   pure subroutine object(self, objection)
+   pure subroutine add_objection(self, objection)
       type(comparison_t), intent(inout) :: self
       character(len=*), intent(in) :: objection
 
       if (.not. allocated(self%objection)) self%objection = objection
-   end subroutine object
+   end subroutine add_objection
 
    !> Object if an attempt failed or they did not all end in the same way
    pure subroutine judge_ends(self)
@@ -300,10 +301,10 @@ contains
          associate (this => self%attempts(i), first => self%attempts(attempt_first))
             if (.not. this%made) cycle
             if (allocated(this%failure)) then
-               call object(self, trim(this%label)//': '//this%failure)
+               call add_objection(self, trim(this%label)//': '//this%failure)
             else if (.not. allocated(first%failure) .and. this%outcome%status &
                      /= first%outcome%status) then
-               call object(self, 'the methods do not agree on how the contact ends: ' &
+               call add_objection(self, 'the methods do not agree on how the contact ends: ' &
                   //status_name(first%outcome%status)//' by '//trim(first%label)//', ' &
                   //status_name(this%outcome%status)//' by '//trim(this%label))
             end if
@@ -324,7 +325,7 @@ contains
          call tabulate(self%compared(i), compared_names(i), self%attempts, self%two_methods)
       end do
       do i = 1, attempt_count
-         if (self%attempts(i)%made) self%attempts(i)%seen &
+         if (self%attempts(i)%made) self%attempts(i)%distance &
             = abs(self%compared(:2)%value(i) - self%compared(:2)%best)
       end do
       call judge_errors(self)
@@ -382,8 +383,8 @@ contains
             if (.not. this%made) cycle
             fine = is_honest(this, error_of_best(self))
             do j = 1, size(fine)
-               if (.not. fine(j)) call object(self, trim(this%label)//' is farther from the best ' &
-                  //trim(compared_names(j))//' than three times the error it states')
+               if (.not. fine(j)) call add_objection(self, trim(this%label)//' is farther from ' &
+                  //'the best '//trim(compared_names(j))//' than three times the error it states')
             end do
          end associate
       end do
@@ -391,13 +392,13 @@ contains
 
    !> Whether the stated errors of an attempt are honest
    pure function is_honest(self, reference)
-      !> The attempt, `seen` set
+      !> The attempt, `distance` set
       type(attempt_t), intent(in) :: self
       !> Stated errors of the best cor and cor_sphere
       real(wp), intent(in) :: reference(2)
       logical :: is_honest(2)
 
-      is_honest = within(self%seen, honest_factor*(self%stated() + reference) + rounding)
+      is_honest = within(self%distance, honest_factor*(self%stated() + reference) + rounding)
    end function is_honest
 
    !> Stated errors of the best cor and cor_sphere: those of the refined internal variables, or that
@@ -448,9 +449,9 @@ contains
                   *max(self%attempts(attempt_first)%accuracy, best(1))
             end select
             if (.not. within(this%value(attempt_halved(3)) - this%best, allowed)) &
-               call object(self, 'the methods do not agree on '//trim(this%name))
+               call add_objection(self, 'the methods do not agree on '//trim(this%name))
             if (.not. settles(this%value(attempt_halved), allowed_change(self)*this%scale)) &
-               call object(self, 'direct does not converge to a '//trim(this%name))
+               call add_objection(self, 'direct does not converge to a '//trim(this%name))
          end associate
       end do
    end subroutine judge_distances
@@ -468,14 +469,14 @@ contains
          associate (this => self%attempts(i))
             if (.not. this%made) cycle
             if (.not. within(this%imbalance(), other_quantities*this%accuracy + rounding)) &
-               call object(self, 'the energies of '//trim(this%label)//' do not close')
+               call add_objection(self, 'the energies of '//trim(this%label)//' do not close')
          end associate
       end do
       direct = richardson(self%attempts(attempt_halved)%imbalance())
       if (.not. within(self%attempts(attempt_halved(3))%imbalance(), &
                        honest_factor*direct%error + allowed_change(self)) .or. &
           .not. settles(self%attempts(attempt_halved)%imbalance(), allowed_change(self))) &
-         call object(self, 'the energies of direct do not close')
+         call add_objection(self, 'the energies of direct do not close')
    end subroutine judge_energies
 
    !> Relative change of a number from step to step that is acceptable at the accuracy of the case
