@@ -102,12 +102,12 @@ module vcor_case_catalogue
       key_t("impact", "velocity", real_key, "Approach velocity at first contact", "m/s", &
          positive, required=.true., instead="drop_height"), &
       key_t("impact", "drop_height", real_key, &
-         "Height the sphere falls from, in place of velocity = sqrt(2 g drop_height)", "m", &
+         "Height of the drop, instead of velocity = sqrt(2 g drop_height)", "m", &
          positive), &
       key_t("impact", "temperature", real_key, "Temperature of both bodies; default: that at " &
          //"which their constants hold", "K", positive), &
       key_t("impact", "gravity", real_key, &
-         "Gravity g that acts during the contact; drop_height has 9.80665 without it", "m/s2", &
+         "Gravity g during the contact; without it drop_height uses 9.80665", "m/s2", &
          not_negative, default="0.0"), &
       !
       key_t("sphere", "shape", text_key, "Shape of the body", &
@@ -129,7 +129,7 @@ module vcor_case_catalogue
          range=interval_t(lower=1.0_wp, lower_open=.true.), models="power", required=.true.), &
       !
       key_t("plate", "half_thickness", real_key, &
-         "Half the thickness; not needed without waves, with 'body' a half space if not given", &
+         "Half the thickness; not needed without waves; if omitted with 'body': a half space", &
          "m", positive), &
       key_t("plate", "material", text_key, "Name of its material", required=.true.), &
       key_t("plate", "waves", text_key, "Model of the waves in the plate", &
@@ -144,20 +144,20 @@ module vcor_case_catalogue
          positive), &
       !
       key_t("contact", "mechanics", text_key, &
-         "Law, pair and waves not given: the paper's, or receding, series and body", &
+         "Defaults of law, pair and waves: the paper's, or receding, series and body", &
          choices="paper exact", default="paper"), &
       key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
          choices="boltzmann receding", default="boltzmann"), &
       key_t("contact", "pair", text_key, "Rule that combines the moduli of two bodies", &
          choices="eq1 series", default="eq1"), &
       !
-      key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
+      key_t("material", "name", text_key, "Name; blanks and underscores are equivalent", &
          required=.true.), &
       key_t("material", "model", text_key, "Model of the relaxation modulus", &
          choices=models, required=.true.), &
       key_t("material", density%name, real_key, density%meaning, density%unit, density%range), &
       key_t("material", "yield_strength", real_key, &
-         "Yield strength, for the validity by mean_pressure", "Pa", positive), &
+         "Yield strength, for the validity measure mean_pressure", "Pa", positive), &
       (key_t("material", model_parameters(i)%parameter%name, &
          merge(list_key, real_key, model_parameters(i)%parameter%is_list), &
          model_parameters(i)%parameter%meaning, model_parameters(i)%parameter%unit, &
@@ -189,7 +189,7 @@ module vcor_case_catalogue
       key_t("material", "shift_file", text_key, &
          "File of temperatures [K or C] and log10 of the shift factor", models=relaxing_models), &
       key_t("material", "vertical_shift", logical_key, &
-         "Whether moduli are proportional to the temperature, too; default: .false.", &
+         "Whether moduli are also proportional to the temperature; default: .false.", &
          models=relaxing_models), &
       key_t("material", "valid_temperature_from", real_key, &
          "Lowest temperature of the data behind the shift", "K", positive, &
