@@ -134,7 +134,7 @@ contains
       integer, intent(out), optional :: rows
 
       character(len=*), parameter :: program = '# vcor '
-      ! longer than a line of the head: of a row its first letter counts
+      ! room for any line of the head; only the first character of a row matters
       character(len=9000) :: line
       character :: last
       integer(int64) :: bytes
@@ -167,7 +167,7 @@ contains
       close (unit)
       if (.not. in_case) identity%version = ''
       if (.not. present(rows)) return
-      ! a row without the end of its line is not complete
+      ! a last row without a line end is incomplete
       open (newunit=unit, file=path, status='old', action='read', access='stream', &
          form='unformatted', iostat=status)
       if (status /= 0) return

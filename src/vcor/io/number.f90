@@ -188,8 +188,8 @@ contains
             column(i) = iand(column(i), limb_mask)
          end do
 
-         ! the point is in the third limb, 21 to 26 bits from its right: 17 or 18 digits are 54 to
-         ! 58 of the 133 or 134 bits
+         ! the binary point is in the third limb, 21 to 26 bits from its right end: the 17 or 18
+         ! digits are 54 to 58 of the 133 or 134 bits
          shift = fraction_bits - exponent - k - decimal%exponent(k) - 2*limb_bits
          digits = shiftl(column(4), 2*limb_bits - shift) + shiftl(column(3), limb_bits - shift) &
             + shiftr(column(2), shift)
@@ -277,7 +277,7 @@ contains
    pure subroutine times_five(limb, exponent)
       !> Limbs from the lowest to the highest, whose highest bit is set before and after
       integer(int64), intent(inout) :: limb(0:)
-      !> Power of two that goes with them
+      !> Exponent of their power of two
       integer, intent(inout) :: exponent
       integer(int64) :: carry, sum
       integer :: i, shift
@@ -288,7 +288,7 @@ contains
          limb(i) = ibits(sum, 0, limb_bits)
          carry = ishft(sum, -limb_bits)
       end do
-      ! the carry, 2 to 4, has two or three bits more than there is room for
+      ! shift the two or three bits of the carry, which is 2 to 4, into the highest limb
       shift = 2
       if (carry >= 4_int64) shift = 3
       do i = 0, ubound(limb, 1) - 1

@@ -129,7 +129,7 @@ contains
       !> first rank has its message
       type(error_t), allocatable, intent(inout) :: error
 
-      ! above the largest code; characters in the room of a number
+      ! factor above the largest code; characters that fit into a number
       integer, parameter :: codes = 1000, room = storage_size(1.0_wp)/8
       character(len=:), allocatable :: message
       real(wp), allocatable :: letters(:)
