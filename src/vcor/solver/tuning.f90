@@ -230,7 +230,7 @@ module vcor_solver_tuning
    real(wp), parameter :: layer_fallback = 1.0e-5_wp ! time
    !> Multiplications of the springs of a contact that grows again after which a run is given up:
    !> they take seconds
-   real(wp), parameter :: most_work = 1.0e10_wp ! time
+   real(wp), parameter :: most_work = 3.0e9_wp ! time
    !> Number of steps beyond which a run is not refined for the sake of `cor` of a layer alone
    integer, parameter :: enough_steps = 1000 ! tested
    !> Smallest error of `cor` over that of `cor_sphere`

@@ -243,7 +243,7 @@ contains
       n = 0
       do
          n = n + 1
-         most = most_steps(impact, trajectory%regrows)
+         most = most_steps(impact, trajectory%regrows .and. .not. settings%time_step > 0.0_wp)
          if (n > most) then
             if (trajectory%status /= contact_separated) call give_up(trajectory%regrows, error)
             exit
