@@ -9,7 +9,6 @@ module vcor_solver
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
-   use vcor_solver_tuning, only : layer_fallback
    use vcor_solver_type, only : default_accuracy, method_for, solve_by => solve_impact, &
       solver_settings_t, solver_t
    implicit none
@@ -206,21 +205,17 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(error_t), allocatable :: failure
-      type(product_t) :: product
 
       call self%ive%solve(impact, trajectory, error)
       ! for a layer product integration takes seconds, and its error estimate says less
-      if (impact%plate%layered() .and. .not. trajectory%regrows) return
+      if (impact%plate%layered()) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
       else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
          return
       end if
-      product = self%product
-      if (impact%plate%layered()) &
-         product%settings%accuracy = max(product%settings%accuracy, layer_fallback)
-      call product%solve(impact, trajectory, error)
+      call self%product%solve(impact, trajectory, error)
       if (.not. allocated(failure)) return
       if (allocated(error)) return
       ! running out of steps says nothing about a contact without a given end

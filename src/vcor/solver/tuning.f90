@@ -226,8 +226,6 @@ module vcor_solver_tuning
    !> Maximum number of steps: more take seconds, for the sums or for the compliance of a layer
    integer, parameter :: most_for_all = 60000 ! tested
    integer, parameter :: most_for_layers = 8000 ! tested
-   !> Best accuracy of `cor_sphere` on a layer that `auto` asks product integration for
-   real(wp), parameter :: layer_fallback = 1.0e-5_wp ! time
    !> Multiplications of the springs of a contact that grows again after which a run is given up:
    !> they take seconds
    real(wp), parameter :: most_work = 3.0e9_wp ! time

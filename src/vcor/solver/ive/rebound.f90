@@ -93,7 +93,6 @@ contains
                call halve(rebound)
                cycle
             end if
-            trajectory%regrows = .true.
             if (rebound%problem%modes%contact%error > rebound%accuracy) then
                call raise(error, error_numerical, 'the contact seems to grow again before it ' &
                   //'has ended, which may be the error of the sum of exponentials that stands ' &
