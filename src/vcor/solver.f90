@@ -56,22 +56,11 @@ contains
 
       logical :: two_terms, is_product
 
+      call check_numbers(settings, error)
+      if (allocated(error)) return
       two_terms = abs(settings%second_coefficient) > 0.0_wp
       is_product = settings%scheme == 'product'
-      if (.not. all(ieee_is_finite([settings%time_step, settings%end_time, settings%accuracy, &
-          settings%second_coefficient]))) then
-         call refuse('the settings of a computation must be numbers', &
-            'time_step end_time accuracy volterra_coefficient')
-      else if (min(settings%time_step, settings%end_time, settings%accuracy) < 0.0_wp) then
-         call refuse('time_step, end_time and accuracy must not be negative', &
-            'time_step end_time accuracy')
-      else if (settings%accuracy > 0.0_wp .and. (settings%accuracy < finest_accuracy &
-               .or. settings%accuracy > coarsest_accuracy)) then
-         call refuse('expected an accuracy in [1e-11, 0.1]', 'accuracy')
-      else if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
-         .and. .not. settings%time_step < settings%end_time) then
-         call refuse('a computation needs time_step < end_time', 'time_step end_time')
-      else if (settings%method == 'ive' .and. .not. is_product) then
+      if (settings%method == 'ive' .and. .not. is_product) then
          call refuse("adams_bashforth is a scheme of method = 'direct'", 'scheme method')
       else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
          call refuse('the second term of the Volterra series has no meaning with a viscosity, ' &
@@ -112,6 +101,29 @@ contains
          call raise(error, error_input, message, about)
       end subroutine refuse
    end subroutine check_settings
+
+   !> Check the numbers among the settings
+   subroutine check_numbers(settings, error)
+      type(solver_settings_t), intent(in) :: settings
+      !> Error of code `error_input`
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. all(ieee_is_finite([settings%time_step, settings%end_time, settings%accuracy, &
+          settings%second_coefficient]))) then
+         call raise(error, error_input, 'the settings of a computation must be numbers', &
+            'time_step end_time accuracy volterra_coefficient')
+      else if (min(settings%time_step, settings%end_time, settings%accuracy) < 0.0_wp) then
+         call raise(error, error_input, 'time_step, end_time and accuracy must not be negative', &
+            'time_step end_time accuracy')
+      else if (settings%accuracy > 0.0_wp .and. (settings%accuracy < finest_accuracy &
+               .or. settings%accuracy > coarsest_accuracy)) then
+         call raise(error, error_input, 'expected an accuracy in [1e-11, 0.1]', 'accuracy')
+      else if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
+         .and. .not. settings%time_step < settings%end_time) then
+         call raise(error, error_input, 'a computation needs time_step < end_time', &
+            'time_step end_time')
+      end if
+   end subroutine check_numbers
 
    !> Solve an impact with given settings, by default by the method `auto`
    subroutine solve_in_short(impact, outcome, error, settings, trajectory)
@@ -167,6 +179,8 @@ contains
       type(adams_bashforth_t), allocatable :: adams_bashforth
       type(solver_settings_t) :: fallback
 
+      call check_numbers(settings, error)
+      if (allocated(error)) return
       if (settings%method == 'ive') then
          allocate (ive)
          call new_ive(ive, settings, error)

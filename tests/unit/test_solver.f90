@@ -1,6 +1,6 @@
 !> Both solvers: convergence, what a trajectory holds, contacts that do not end, refusals
 program test_solver
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : waves_none, waves_relaxing
@@ -501,6 +501,14 @@ contains
       call new_solver(solver, settings, general, error)
       call run(solver, general, direct)
       call check_close(outcome%cor, direct%cor, 1.0e-6_wp, "ive and direct agree on it")
+      settings%accuracy = 0.0_wp
+
+      settings%accuracy = -1.0_wp
+      call new_solver(solver, settings, error)
+      call refused(error, "a solver for any impact: accuracy < 0", "must not be negative")
+      settings%accuracy = ieee_value(1.0_wp, ieee_quiet_nan)
+      call new_solver(solver, settings, error)
+      call refused(error, "a solver for any impact: accuracy nan", "must be numbers")
       settings%accuracy = 0.0_wp
 
       settings%method = "magic"
