@@ -1,20 +1,19 @@
 !> Product integration of the twice-integrated equation of motion, for every kernel
 !>
-!> On equal steps u is taken as a parabola through the ends of the step and the node before, and the
-!> kernel integrated exactly over each step. With u' dt = du_j + (theta - 1/2) (du_j - du_{j-1}) on
-!> step j, du_j = u_j - u_{j-1}, the force of Eqs. (5) and (8) is one sum over the past,
+!> The steps are equal. On each step u is the parabola through both ends of the step and the node
+!> before it, and the kernel is integrated exactly. With du_j = u_j - u_{j-1} and, on step j,
+!> u' dt = du_j + (theta - 1/2) (du_j - du_{j-1}), the force of Eqs. (5) and (8) is the sum
 !>
 !>     F_n = sum_{j=1..n} W_{n-j} du_j,   W_i = w_i + v_i - v_{i-1},
 !>     w_i = int_0^1 k((i + 1 - theta) dt) dtheta,
 !>     v_i = int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta
 !>
-!> so that a singular kernel needs no care. Impulse and second impulse follow by the Adams-Moulton
-!> rule of third order, or by the trapezoidal rule where the plate or a dashpot makes a step stiff,
-!> which keeps the method stable for any step; a dashpot's impulse is viscosity*u exactly. What is
-!> left per step is one equation s + c u + d u^2 = r, d = 0 without the second term of the Volterra
-!> series. The error falls with dt^(n+1), the start u ~ t^n being what limits it: dt^2.5 for a
-!> sphere. The sum over the past makes N^2/2 multiplications and additions in all, on contiguous
-!> arrays.
+!> with finite weights even if k(0) is infinite. The impulse and its integral follow by the
+!> Adams-Moulton rule of third order, or by the trapezoidal rule if the plate or a dashpot makes a
+!> step stiff, so that the method is stable for any step; a dashpot's impulse is exactly
+!> viscosity*u. Each step solves one equation s + c u + d u^2 = r, with d = 0 without the second
+!> term of the Volterra series. The start u ~ t^n limits the order: the error falls as dt^(n+1),
+!> which is dt^2.5 for a sphere. N steps take N^2/2 multiply-adds on contiguous arrays.
 module vcor_solver_direct_product
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -43,7 +42,7 @@ module vcor_solver_direct_product
       procedure :: solve
    end type product_t
 
-   !> A run with a given step, at the node that is being solved
+   !> State of a run with a given time step at the newest node
    type :: run_t
       !> Kernel of the contact
       type(contact_kernel_t) :: kernel
@@ -51,15 +50,15 @@ module vcor_solver_direct_product
       real(wp), allocatable :: du(:)
       !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
       real(wp) :: second_coefficient = 0.0_wp
-      !> That term, c2 in its kernel
+      !> The second term; its kernel includes the factor c2
       type(second_term_t) :: second
-      !> Contact that shrinks under the receding law
+      !> State of the contact under the receding law
       type(receding_t) :: receding
       !> Viscosity of the kernel's dashpot [N s/m^1.5]
       real(wp) :: viscosity = 0.0_wp
-      !> Impulse of the dashpot [N s]; once a receding contact shrinks it stays what it is
+      !> Impulse of the dashpot [N s]; constant once a receding contact shrinks
       real(wp) :: dashpot = 0.0_wp
-      !> Motion as a function of the force
+      !> Motion at the node as a function of the force there
       type(motion_t) :: motion
       !> Indentation [m]
       real(wp) :: s = 0.0_wp
@@ -69,7 +68,7 @@ module vcor_solver_direct_product
       real(wp) :: slope = 0.0_wp
       !> s' [m/s]
       real(wp) :: speed = 0.0_wp
-      !> Force without the dashpot's [N]
+      !> Force without that of the dashpot [N]
       real(wp) :: force = 0.0_wp
    end type run_t
 
@@ -78,8 +77,8 @@ contains
    !> Build the solver
    pure subroutine new_product(self, settings)
       type(product_t), intent(out) :: self
-      !> Step, end and second term; without a step it is refined until the accuracy is reached, a
-      !> result with a given step is held against the accuracy
+      !> Time step, end time, accuracy and second term. Without a time step the step is halved until
+      !> the accuracy is reached; with one, the error is only compared with the accuracy
       type(solver_settings_t), intent(in) :: settings
 
       self%settings = settings
@@ -105,12 +104,12 @@ contains
          if (time_step > 0.0_wp) then
             dt = 4.0_wp*time_step
          else
-            ! a glassy modulus that lasts for no time at all is no reason for tiny steps, nor is any
-            ! where steps are dear
+            ! a fast glassy modulus shortens the steps by a factor of least_part at most, and not at
+            ! all on a layer, where steps are expensive
             dt = impact%time_scale()
             if (.not. impact%plate%layered()) dt = max(impact%fast_time_scale(), dt/least_part)
             dt = impact%law%contact_time/real(first_steps, wp)*dt
-            ! the last step ends where the computation is to end
+            ! make the end time a whole number of steps
             if (end_time > 0.0_wp) &
                dt = end_time/real(ceiling(min(end_time/dt, &
                real(most_steps(impact, .false.), wp))), wp)
@@ -132,7 +131,7 @@ contains
                level = 0
                cycle
             end if
-            ! coarse steps can miss the end, so only the given step decides that there is none
+            ! coarse steps can miss the separation: only the given step can show that there is none
             if (trajectory%status /= contact_separated .and. (level == 3 .or. &
                 .not. (time_step > 0.0_wp .or. trajectory%status == contact_resting &
                 .and. 2*trajectory%steps <= most_steps(impact, trajectory%regrows)))) return
@@ -148,17 +147,17 @@ contains
                trajectory%cor_error = found%error
                found = richardson(cor_sphere)
                trajectory%cor_sphere_error = found%error
-               ! cor has the error of cor_sphere and that of the plate: they cancel by chance only
+               ! cor has the errors of cor_sphere and of the plate, which cancel only by chance
                trajectory%cor_error = max(trajectory%cor_error, &
                   cancelled*trajectory%cor_sphere_error)
-               ! few springs resolve a contact that is small where it grows again: the order may not
-               ! show yet
+               ! if the contact is small when it grows again, few springs resolve it, and the three
+               ! runs may not yet show the order
                if (trajectory%regrows) then
                   trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)))
                   trajectory%cor_sphere_error = max(trajectory%cor_sphere_error, &
                      abs(cor_sphere(3) - cor_sphere(2)))
                end if
-               ! the face of a layer rings: what the order of three runs says is chance
+               ! the face of a layer rings, so that the order seen in three runs is accidental
                if (impact%plate%layered()) then
                   trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)), &
                      abs(cor(2) - cor(1)))
@@ -171,7 +170,7 @@ contains
                    .and. trajectory%steps > enough_steps &
                    .or. trajectory%cor_error <= trajectory%accuracy &
                    .and. found%error <= share_of_force*accuracy*force(3))) then
-                  ! the steps were not chosen for the maxima
+                  ! the maxima may be less accurate than cor: extrapolate them
                   trajectory%max_force = found%limit
                   found = richardson(depth)
                   trajectory%max_indentation = found%limit
@@ -191,8 +190,8 @@ contains
       end associate
    end subroutine solve
 
-   !> Number of steps at which a run is given up: fewer where the contact has grown again, which
-   !> seldom ends soon then
+   !> Largest number of steps of a run, half as many if the contact has grown again, as it seldom
+   !> ends soon then
    pure integer function most_steps(impact, regrows)
       type(impact_t), intent(in) :: impact
       !> Whether the contact has grown again
@@ -202,20 +201,20 @@ contains
       if (regrows) most_steps = most_steps/2
    end function most_steps
 
-   !> One run with a given step
+   !> Compute one run with a given time step
    subroutine march(settings, impact, dt, expected, trajectory, crude, work, error)
-      !> End, second term, and whether to go on after the separation
+      !> End time, second term, and whether to continue after the separation
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Number of steps that it may take; when there are more there will be room
+      !> Expected number of steps, for memory; more are possible
       integer, intent(in) :: expected
       type(trajectory_t), intent(out) :: trajectory
-      !> Whether a step was too long for a plate whose alpha grows, or the end of a receding contact
-      !> too sudden for it
+      !> Whether the step is too long: for the growth of the plate's alpha, or because the last step
+      !> of a receding contact covers too much of the approach
       logical, intent(out) :: crude
-      !> Multiplications that springs have taken, which grow with the cube of the steps
+      !> Number of multiplications for springs, which grows with the cube of the number of steps
       real(wp), intent(out) :: work
       type(error_t), allocatable, intent(out) :: error
 
@@ -264,7 +263,7 @@ contains
          if (crude .and. .not. settings%time_step > 0.0_wp) return
          if (.not. run%receding%shrinks) turn = n
          if (run%receding%regrows) then
-            ! what its weight pushes back does not come off any more
+            ! the weight may make it grow again: stop if the remaining energy cannot separate it
             call trajectory%stop_at_rest(impact, .true., stopped)
             if (stopped) exit
             if (run%receding%regrown) trajectory%regrows = .true.
@@ -273,7 +272,7 @@ contains
                return
             end if
          end if
-         ! of the motion of the sphere no digit is left
+         ! the velocity of the sphere is lost in the rounding error of s'
          if (.not. abs(run%speed)*epsilon(1.0_wp) < impact%free_velocity(run%motion%t)) then
             call raise(error, error_numerical, 'fixed steps do not follow this plate: its motion ' &
                //'grows beyond all bounds')
@@ -289,7 +288,7 @@ contains
 
          trajectory%last = n
          trajectory%steps = n
-         ! while the indentation grows the force is positive: what is not is rounding
+         ! while the indentation grows the force is positive; a negative one is a rounding error
          ends = node(col_force) <= 0.0_wp .and. run%speed < 0.0_wp
          if (run%receding%shrinks) then
             ends = run%receding%t1(3) <= 0.0_wp
@@ -318,9 +317,9 @@ contains
       call find_peaks(trajectory)
    end subroutine march
 
-   !> Say that a contact lasts too long
+   !> Raise the error that a contact lasts too long
    subroutine give_up(regrows, error)
-      !> Whether it has grown again
+      !> Whether the contact has grown again
       logical, intent(in) :: regrows
       type(error_t), allocatable, intent(out) :: error
 
@@ -334,7 +333,7 @@ contains
       end if
    end subroutine give_up
 
-   !> Make room for `room` steps, what is there stays
+   !> Make room for `room` steps; contents are kept
    subroutine make_room(run, impact, dt, room, trajectory)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
@@ -344,7 +343,7 @@ contains
       integer, intent(in) :: room
       type(trajectory_t), intent(inout) :: trajectory
 
-      ! one node more for the end of contact before ghost lines
+      ! with ghost lines the end of contact is an additional node
       call trajectory%reserve(room + 1)
       call run%kernel%prepare(impact, dt, room)
       call lengthen(run%du, 1, room)
@@ -354,7 +353,7 @@ contains
          *square_weights(impact, dt, 2*room))
    end subroutine make_room
 
-   !> Go to node n: motion and force there
+   !> Advance to node n: compute the motion and the force there
    subroutine take_step(run, impact, n)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
@@ -370,9 +369,9 @@ contains
          call step_with_a_part(run, impact, n, run%dashpot)
       else
          call step_with_all_the_past(run, impact, n)
-         ! a first step in which the motion turns is too long, and will be halved. A dashpot's
-         ! impulse stays what it is at the largest indentation; at rest that may have been some
-         ! steps ago
+         ! if the motion turns in the first step, the step is too long, and the next run halves it.
+         ! A dashpot's impulse remains that at the largest indentation, in this step if s' was
+         ! positive at its start, otherwise earlier (near rest)
          if (impact%law%receding .and. run%speed < 0.0_wp .and. n > 1) &
             call step_with_a_part(run, impact, n, run%viscosity*impact%law%u(last_s &
             + 0.5_wp*run%kernel%dt*last_speed**2/(last_speed - run%speed)))
@@ -381,8 +380,8 @@ contains
       if (impact%law%receding) call run%receding%accept(n, run%s)
    end subroutine take_step
 
-   !> Solve node n with a force that is the sum over all the past: F = known + linear*u +
-   !> quadratic*u^2, and the dashpot's viscosity*u', make s + c u + d u^2 = right
+   !> Solve node n with a force that is the sum over the whole past: the equation of motion with
+   !> F = known + linear*u + quadratic*u^2 and the dashpot's viscosity*u' is s + c u + d u^2 = r
    subroutine step_with_all_the_past(run, impact, n)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
@@ -399,7 +398,7 @@ contains
       quadratic = 0.0_wp
       two_terms = abs(run%second_coefficient) > 0.0_wp
       if (two_terms) then
-         ! with du_n = u_n - u_{n-1}
+         ! the second term as a polynomial in u_n, by du_n = u_n - u_{n-1}
          single = run%second%kernel%sum_over(n, 1, n - 1, run%du)
          own = run%second%kernel%newest
          known = known + run%second%past(n) - 2.0_wp*single*last_u + own*last_u**2
@@ -417,15 +416,15 @@ contains
          if (two_terms) call run%second%accept(n, run%du)
          run%force = known + (linear + quadratic*run%u)*run%u
          run%dashpot = run%viscosity*run%u
-         ! with alpha F in U' and the dashpot's force in F
+         ! U' contains alpha F, and F the dashpot's force, which is proportional to s'
          run%speed = (v_0 - slowing*run%force - (slowing - alpha)/weight*run%dashpot) &
             /(1.0_wp + alpha*run%viscosity*run%slope)
          call run%motion%with_recoil(n, run%kernel%newest, run%slope, run%du, run%force, run%speed)
       end associate
    end subroutine step_with_all_the_past
 
-   !> Solve node n with the force of a contact that shrinks, a sum over a part of the past. If it
-   !> still grows, nothing is changed
+   !> Solve node n with the force of a shrinking contact, from the past up to t1 or from springs.
+   !> If the contact still grows, the solution is left as it is
    subroutine step_with_a_part(run, impact, n, dashpot)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
@@ -447,7 +446,7 @@ contains
       end associate
    end subroutine step_with_a_part
 
-   !> Force of the dashpot at the node
+   !> Force of the dashpot at the node, 0 once a receding contact shrinks
    pure function drag(run)
       type(run_t), intent(in) :: run
       !> Force [N]

@@ -1,13 +1,13 @@
 !> Receding contact in product integration
 !>
-!> Once the contact shrinks the force is an integral up to t1(t), and t1 follows from the condition
-!> that int_t1^t k(t - x) s'(x) dx is zero: T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
+!> When the contact shrinks, F = int_0^t1 k(t - x) u'(x) dx, and t1(t) follows from the condition
+!> int_t1^t k(t - x) s'(x) dx = 0: T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
 !> doi:10.1115/1.3625192, for the sphere S. C. Hunter, J. Mech. Phys. Solids 8 (1960) 219,
-!> doi:10.1016/0022-5096(60)90028-4. With s a parabola over each step the condition is summed up
-!> from the newest step backwards until it changes its sign, in the step that t1 lies in; there the
-!> kernel is integrated over a part of the step. The newest indentation and velocity depend on the
-!> force, s_n = s_0 - a F and s'_n = v_0 - b F, so force and t1 are found together. A contact that
-!> grows again is beyond this condition, and followed spring by spring from there on.
+!> doi:10.1016/0022-5096(60)90028-4. With s a parabola on each step, the integral is summed from the
+!> newest step backwards until its sign changes: t1 lies in that step, and the kernel is integrated
+!> over the part of the step after t1. The newest indentation and velocity depend on the force,
+!> s_n = s_0 - a F and s'_n = v_0 - b F, so that F and t1 are found together. The condition does not
+!> hold once the contact grows again; from then on the contact is followed spring by spring.
 module vcor_solver_direct_receding
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
@@ -21,32 +21,32 @@ module vcor_solver_direct_receding
 
    public :: receding_t
 
-   !> Growth of t1, over the time step, that is more than rounding
+   !> Growth of t1 in a step, in units of the step, that may still be rounding
    real(wp), parameter :: rounding = sqrt(epsilon(1.0_wp))
 
-   !> Receding contact under way
+   !> State of a receding contact
    type :: receding_t
       !> Whether the contact shrinks
       logical :: shrinks = .false.
       !> Whether it has begun to grow again in the last step
       logical :: regrows = .false.
-      !> Whether it has, and the springs are followed
+      !> Whether it has grown again and is followed by springs
       logical :: regrown = .false.
-      !> The springs, and t1 over the time step where it began to
+      !> The springs, and t1 in units of the time step when the contact began to grow again
       type(springs_t) :: springs
       real(wp), private :: smallest = 0.0_wp
-      !> t1 over the time step at the last three nodes, the newest last; beyond the end of contact
-      !> negative
+      !> t1 in units of the time step at the last three nodes, the newest last; negative after the
+      !> end of contact
       real(wp) :: t1(3) = 0.0_wp
-      !> Force without a dashpot's in the last step [N]
+      !> Force at the newest node, without that of a dashpot [N]
       real(wp) :: force = 0.0_wp
-      !> Step in which t1 lies
+      !> Number of the step that contains t1
       integer, private :: step = 0
-      !> Node up to which the contact has grown
+      !> Last node before the contact shrinks
       integer, private :: turn = 0
       !> Indentation at the nodes [m], shape (0:)
       real(wp), allocatable, private :: s(:)
-      !> Its differences [m]; that of the first step stands for the one before
+      !> Differences of s from node to node [m], shape (1:); ds(1) also stands for ds(0)
       real(wp), allocatable, private :: ds(:)
    contains
       procedure :: prepare
@@ -56,7 +56,7 @@ module vcor_solver_direct_receding
 
 contains
 
-   !> Make room for `steps` steps, what is there stays
+   !> Make room for `steps` steps; contents are kept
    pure subroutine prepare(self, steps)
       class(receding_t), intent(inout) :: self
       !> Number of steps
@@ -66,7 +66,7 @@ contains
       call lengthen(self%ds, 1, steps)
    end subroutine prepare
 
-   !> Take the indentation at node n into the sums
+   !> Store the indentation at node n
    pure subroutine accept(self, n, s)
       class(receding_t), intent(inout) :: self
       !> Node
@@ -84,8 +84,8 @@ contains
       end if
    end subroutine accept
 
-   !> Force at node n, t1 with it. If t1 is found to lie in the newest step, nothing is: the contact
-   !> still grows
+   !> Find the force and t1 at node n. If the contact has not shrunk so far and t1 lies in the newest
+   !> step, the contact still grows and nothing is set
    subroutine find_force(self, impact, kernel, n, du, indentation, velocity)
       class(receding_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -106,7 +106,7 @@ contains
       grew = last(2) > last(1) + rounding
       if (.not. self%regrown) then
          call follow_edge(self, impact, kernel, n, du, indentation, velocity)
-         ! on a plate at rest, without weight, s' only falls: what grows there is rounding
+         ! on a fixed plate without gravity s' only falls, and growth is a rounding error
          if (.not. (self%regrows .and. (impact%plate%moves() .or. impact%gravity > 0.0_wp))) return
          self%regrown = .true.
          self%smallest = last(2)
@@ -117,15 +117,15 @@ contains
       call self%springs%find_force(impact, kernel, n, self%s(n - 1), self%ds, indentation, &
          self%force, self%t1(3))
       self%regrows = self%t1(3) > last(2) + rounding .and. .not. grew
-      ! what was never released does not remember that the contact has grown again. The step behind
-      ! that of t1 is free for sure
+      ! springs that were never released are not affected by the growth: with the edge among them
+      ! the condition holds again. The search for t1 begins at a step that is certainly free
       if (self%t1(3) > 0.0_wp .and. ceiling(self%t1(3)) + 1 < floor(self%smallest)) then
          self%regrown = .false.
          self%step = ceiling(self%t1(3)) + 1
       end if
    end subroutine find_force
 
-   !> Force and t1 at node n by the condition, as long as the contact has not grown again
+   !> Find force and t1 at node n from the condition, as long as the contact does not grow again
    subroutine follow_edge(self, impact, kernel, n, du, indentation, velocity)
       class(receding_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -144,7 +144,7 @@ contains
 
       viscosity = impact%kernel_viscosity()
       m = self%step
-      ! condition = known - per_force*F
+      ! the integral in the condition, with a dashpot's term, is known - per_force*F
       per_force = kernel%newest*indentation(2) + viscosity*velocity(2)
       known = kernel%sum_over(n, m + 1, n - 1, self%ds) - kernel%moment(n - m - 1)*self%ds(m) &
          + kernel%newest*(indentation(1) - self%s(n - 1)) + viscosity*velocity(1)
@@ -171,7 +171,7 @@ contains
       self%step = max(m, 1)
       self%t1(1:2) = self%t1(2:3)
       if (m == 0) then
-         ! t1 beyond zero by what the condition lacks, as k(t) v0 is its rate there
+         ! continue t1 linearly to negative times, where the condition is about k(t) v0 t1
          self%force = 0.0_wp
          self%t1(3) = min(0.0_wp, known/(impact%kernel(real(n, wp)*kernel%dt)*self%ds(1)))
       else
@@ -181,21 +181,21 @@ contains
       self%regrows = self%t1(3) > self%t1(2) + rounding
    end subroutine follow_edge
 
-   !> Find t1 in step m by the Illinois method, and the force with it
+   !> Find t1 in step m, and the force, by the Illinois method
    subroutine find_in_step(self, law, kernel, n, m, du, known, per_force)
-      !> The contact; on entry its force is that up to the end of the step
+      !> The contact; on entry its force is the one for t1 at the end of step m
       class(receding_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
       type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n
-      !> Step that t1 lies in
+      !> Step that contains t1
       integer, intent(in) :: m
       !> Differences of u, shape (>= m)
       real(wp), intent(in) :: du(:)
-      !> Condition with t1 at the end of the step, no force counted
+      !> Condition for t1 at the end of step m, without per_force*F [N/m^0.5]
       real(wp), intent(in) :: known
-      !> What the condition loses per force
+      !> Decrease of the condition per force [m^-0.5]
       real(wp), intent(in) :: per_force
 
       real(wp) :: lower, upper, f_lower, f_upper, f, x, force, end_u
@@ -226,9 +226,9 @@ contains
 
    contains
 
-      !> Condition and force for t1 at a position in the step
+      !> Condition and force for t1 at a given position in step m
       subroutine evaluate(position, condition, up_to)
-         !> Position, 0 .. 1
+         !> Position from the start, 0, to the end, 1, of the step
          real(wp), intent(in) :: position
          real(wp), intent(out) :: condition
          !> Force [N]

@@ -1,20 +1,20 @@
 !> Springs of a contact that grows again: the method of dimensionality reduction
 !>
-!> Whatever the history, the contact is a row of independent springs, spring sigma the one that the
-!> body touches first at the indentation sigma (V. L. Popov and M. Hess, Method of Dimensionality
-!> Reduction in Contact Mechanics and Friction, 2015). Its compression is w = s - sigma while it is
-!> pressed, and w = s - sigma + g with a gap g > 0 while it is free and carries nothing:
+!> Whatever the history, the contact is equivalent to a row of independent springs (V. L. Popov and
+!> M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction, 2015). The body
+!> first touches spring sigma at the indentation sigma. A pressed spring has the compression
+!> w = s - sigma; a free one carries no force and has w = s - sigma + g with a gap g > 0:
 !>
 !>     phi = int_0^t k(t - x) w'(x) dx,   g = max(0, level - s),
 !>     F = int max(0, phi) u''(sigma) dsigma
 !>
-!> the level being the indentation at which it just carries nothing. The springs that are followed
-!> are those touched at nodes. With dw as a parabola over each step phi is a sum over the past, its
-!> newest term W_0 dw, so phi = W_0 (s - level), and F is a polygon over sigma times u'', integrated
-!> exactly: it rises with s, and s = s_0 - a F has one root. A dashpot adds the derivative of the
-!> parabola. The error falls with dt^2; next to the edge of a contact that grows phi is as steep as
-!> int k, or with a dashpot jumps, which makes the order less while it does. The sums over the gaps
-!> make the work grow with the cube of the steps since the largest indentation.
+!> in which `level` is the indentation at which phi = 0. The springs first touched at the nodes are
+!> followed. With w a parabola on each step, phi is a sum over the past with the newest term W_0 dw,
+!> so that phi = W_0 (s - level). It is taken as linear in sigma between these springs, and F is
+!> integrated exactly; F rises with s, so that s = s_0 - a F has one root. A dashpot adds its
+!> viscosity times w' of the parabola. The error falls as dt^2, but more slowly while the contact
+!> grows, as phi is then as steep as int k at the edge, or jumps there if there is a dashpot. The
+!> sums over the gaps take work that grows with the cube of the steps since the largest indentation.
 module vcor_solver_direct_springs
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
@@ -29,31 +29,31 @@ module vcor_solver_direct_springs
 
    !> A spring
    type :: spring_t
-      !> Node at which it is touched first
+      !> Node at which the body first touches it
       integer :: touched = 0
-      !> Node at which it was free first; 0: it never was
+      !> First node at which it was free, 0 if it never was
       integer :: released = 0
-      !> Indentation sigma that touches it [m]
+      !> Indentation sigma at which the body first touches it [m]
       real(wp) :: sigma = 0.0_wp
-      !> u and du/ds there [m^1.5], [m^0.5]
+      !> u [m^1.5] and du/ds [m^0.5] at indentation sigma
       real(wp) :: u = 0.0_wp, slope = 0.0_wp
       !> Gap at the last node [m]
       real(wp) :: gap = 0.0_wp
-      !> Indentation above which it carries a force at the node that is solved [m]
+      !> Indentation at the newest node above which it carries a force [m]
       real(wp) :: level = 0.0_wp
-      !> Differences of its gap from node to node, that at its release first [m]
+      !> Differences of its gap from node to node, beginning with that at its release [m]
       real(wp), allocatable :: d_gap(:)
    end type spring_t
 
-   !> The springs under way
+   !> All springs of a contact
    type :: springs_t
-      !> Multiplications that their sums have taken
+      !> Number of multiplications in the sums over gaps so far
       real(wp) :: work = 0.0_wp
-      !> Viscosity over the time step [N/m^1.5]
+      !> Viscosity divided by the time step [N/m^1.5]
       real(wp), private :: drag = 0.0_wp
       !> Number of springs
       integer, private :: count = 0
-      !> The springs, the one touched first leading, shape (>= count)
+      !> The springs in the order in which they are touched, shape (>= count)
       type(spring_t), allocatable, private :: spring(:)
    contains
       procedure :: start
@@ -66,16 +66,16 @@ module vcor_solver_direct_springs
 
 contains
 
-   !> Follow the springs from first contact to node n, or until their `work` is too much
+   !> Follow the springs from first contact to node n, or until `work` exceeds `most_work`
    subroutine start(self, impact, kernel, n, turn, s, ds)
       class(springs_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n
-      !> Node up to which the contact has grown
+      !> Last node before the contact shrinks
       integer, intent(in) :: turn
-      !> Indentation at the nodes [m], and its differences
+      !> Indentation at the nodes and its differences from node to node [m]
       real(wp), intent(in) :: s(0:)
       real(wp), contiguous, intent(in) :: ds(:)
 
@@ -95,7 +95,7 @@ contains
       end do
    end subroutine start
 
-   !> Force at node n
+   !> Find the force and t1 at node n
    subroutine find_force(self, impact, kernel, n, last_s, ds, indentation, force, t1)
       class(springs_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -104,14 +104,14 @@ contains
       integer, intent(in) :: n
       !> Indentation at the node before [m]
       real(wp), intent(in) :: last_s
-      !> Its differences up to there [m]
+      !> Differences of the indentation up to that node [m]
       real(wp), contiguous, intent(in) :: ds(:)
-      !> s_0 [m] and a [m/N]
+      !> s_0 [m] and a [m/N] in s = s_0 - a F
       real(wp), intent(in) :: indentation(2)
       !> Force [N]
       real(wp), intent(out) :: force
-      !> Time over the time step at which the edge of the contact was touched first; beyond the end
-      !> of contact negative
+      !> Time at which the body first touched the present edge of the contact, in units of the time
+      !> step; negative after the end of contact
       real(wp), intent(out) :: t1
 
       real(wp) :: stiffness, s, value, slope, change
@@ -119,7 +119,7 @@ contains
 
       call self%find_levels(kernel, n, last_s, ds)
       stiffness = kernel%newest + 1.5_wp*self%drag
-      ! the force is convex: from the second one on the steps go down to the root
+      ! the force is convex in s: after one of Newton's steps the others fall towards the root
       s = last_s
       do iteration = 1, 60
          call self%press(impact%law, s, value, slope)
@@ -133,12 +133,12 @@ contains
       force = stiffness*value
       call self%accept(impact%law, n, s)
       t1 = self%edge(s)
-      ! beyond zero by what the first spring lacks, as k(t) v0 is the rate of its force there
+      ! continue t1 linearly to negative times: phi of the first spring is about k(t) v0 t1
       if (.not. t1 > 0.0_wp) t1 = min(0.0_wp, stiffness*(s - self%spring(1)%level) &
          /(impact%kernel(real(n, wp)*kernel%dt)*ds(1)))
    end subroutine find_force
 
-   !> The level of each spring at node n
+   !> Compute the level of each spring at node n
    subroutine find_levels(self, kernel, n, last_s, ds)
       class(springs_t), intent(inout) :: self
       type(contact_kernel_t), intent(in) :: kernel
@@ -146,7 +146,7 @@ contains
       integer, intent(in) :: n
       !> Indentation at the node before [m]
       real(wp), intent(in) :: last_s
-      !> Its differences up to there [m]
+      !> Differences of the indentation up to that node [m]
       real(wp), contiguous, intent(in) :: ds(:)
 
       real(wp) :: pressed, force
@@ -170,7 +170,7 @@ contains
       end do
    end subroutine find_levels
 
-   !> Take the indentation at node n in
+   !> Store the gaps at node n, and add a spring if the indentation is larger than ever before
    subroutine accept(self, law, n, s)
       class(springs_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
@@ -199,7 +199,7 @@ contains
       if (s > self%spring(self%count)%sigma) call touch(self, law, n, s)
    end subroutine accept
 
-   !> Touch a new spring
+   !> Add the spring that is first touched at node n
    subroutine touch(self, law, n, s)
       class(springs_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
@@ -224,8 +224,8 @@ contains
       end associate
    end subroutine touch
 
-   !> Force over the stiffness of the newest step, int max(0, s - level) u'' dsigma, and its
-   !> derivative by s
+   !> Force divided by the stiffness of the newest step, int max(0, s - level) u'' dsigma, and its
+   !> derivative with respect to s
    pure subroutine press(self, law, s, value, slope)
       class(springs_t), intent(in) :: self
       type(contact_law_t), intent(in) :: law
@@ -243,7 +243,7 @@ contains
       slope = 0.0_wp
       associate (last => self%spring(self%count))
          if (s > last%sigma) then
-            ! springs that are touched in this step
+            ! springs first touched in this step: their level is sigma
             value = law%u(s) - last%u - (s - last%sigma)*last%slope
             slope = law%slope(s) - last%slope
          end if
@@ -257,7 +257,7 @@ contains
             du = [left%slope, right%slope]
          end associate
          if (.not. minval(x) > 0.0_wp) then
-            ! only a part of them is pressed
+            ! only some of the springs between these two are pressed
             k = minloc(x, 1)
             sigma(k) = sigma(1) + (sigma(2) - sigma(1))*x(1)/(x(1) - x(2))
             x(k) = 0.0_wp
@@ -265,14 +265,15 @@ contains
             du(k) = law%slope(sigma(k))
          end if
          if (.not. sigma(2) > sigma(1)) cycle
-         ! by parts
+         ! integrate by parts, s - level being linear in sigma
          value = value + x(2)*du(2) - x(1)*du(1) &
             - (x(2) - x(1))*((u(2) - u(1))/(sigma(2) - sigma(1)))
          slope = slope + (du(2) - du(1))
       end do
    end subroutine press
 
-   !> Place of the edge of the contact, by the time over the time step at which it was touched first
+   !> Time at which the body first touched the present edge of the contact, in units of the time
+   !> step; 0 if no spring is pressed
    pure real(wp) function edge(self, s)
       class(springs_t), intent(in) :: self
       !> Indentation [m]
