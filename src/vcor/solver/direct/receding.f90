@@ -84,8 +84,8 @@ contains
       end if
    end subroutine accept
 
-   !> Find the force and t1 at node n. If the contact has not shrunk so far and t1 lies in the newest
-   !> step, the contact still grows and nothing is set
+   !> Find the force and t1 at node n. If the contact has not shrunk so far and t1 lies in the
+   !> newest step, the contact still grows and nothing is set
    subroutine find_force(self, impact, kernel, n, du, indentation, velocity)
       class(receding_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
