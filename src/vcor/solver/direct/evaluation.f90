@@ -1,4 +1,5 @@
-!> Evaluation of product integration: end of contact, weights of integrals over the contact
+!> Evaluation of a run of product integration: the state at the end of contact, found by
+!> interpolation in the last step, and quadrature weights for integrals over the contact
 module vcor_solver_direct_evaluation
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
@@ -15,19 +16,19 @@ module vcor_solver_direct_evaluation
 
 contains
 
-   !> State where F = 0 in the step before node n, the first one with F <= 0. The indentation (by
-   !> cubic Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth
-   !> there even where s goes to zero with F
+   !> State where F = 0 in the step that ends at node n, the first node with F <= 0. In
+   !> F = stiffness u - M the indentation is a Hermite cubic and the memory M a parabola: both are
+   !> smooth even if s goes to zero together with F
    pure function end_of_contact(impact, stiffness, recoil, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
-      !> About dF/du [N/m^1.5]
+      !> Approximate dF/du [N/m^1.5]
       real(wp), intent(in) :: stiffness
-      !> What C(oo) F' of a layer adds to U' at nodes n - 2, n - 1 and n [m/s]
+      !> Recoil C(oo) F' in U' of a layer at nodes n - 2, n - 1 and n [m/s]
       real(wp), intent(in) :: recoil(-1:1)
       type(trajectory_t), intent(in) :: trajectory
-      !> Node
+      !> First node with F <= 0
       integer, intent(in) :: n
-      !> State
+      !> State at the end of contact
       real(wp) :: node(columns)
 
       real(wp) :: a(columns), b(columns), memory(-1:1), theta, lower, upper, f, f_lower, f_upper, dt
@@ -76,19 +77,19 @@ contains
       end associate
    end function end_of_contact
 
-   !> State where a receding contact ends in the step before node n, as t1 gets to 0: it is a smooth
-   !> function of time, and the force, an integral of u' from 0 to t1, goes to zero as t1^n
+   !> State where a receding contact ends in the step that ends at node n: at t1 = 0, as t1 is a
+   !> smooth function of time. The force, an integral over u' from 0 to t1, goes to zero as t1^n
    pure function end_of_receding_contact(impact, t1, recoil, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
-      !> t1 at nodes n - 2, n - 1 and n in any unit, the last one negative
+      !> t1 at nodes n - 2, n - 1 and n in any unit, negative at node n
       real(wp), intent(in) :: t1(-1:1)
-      !> What C(oo) F' of a layer adds to U' there [m/s]
+      !> Recoil C(oo) F' in U' of a layer at the same nodes [m/s]
       real(wp), intent(in) :: recoil(-1:1)
-      !> The trajectory, node n without a force
+      !> Trajectory, with no force at node n
       type(trajectory_t), intent(in) :: trajectory
-      !> Node
+      !> First node after the end
       integer, intent(in) :: n
-      !> State
+      !> State at the end of contact
       real(wp) :: node(columns)
 
       real(wp) :: a(columns), theta, lower, upper, tau, once, twice
@@ -106,7 +107,7 @@ contains
          end if
       end do
 
-      ! integrals of (1 - x)^n from 0 to 1, once and twice
+      ! (1 - x)^n integrated once and twice from x = 0 to 1
       once = 1.0_wp/(impact%law%exponent + 1.0_wp)
       twice = 1.0_wp/(impact%law%exponent + 2.0_wp)
       tau = theta*(trajectory%state(col_time, n) - a(col_time))
@@ -117,17 +118,17 @@ contains
       call complete(impact, recoil, trajectory, n, theta, node)
    end function end_of_receding_contact
 
-   !> Complete the state at the end of contact, the recoil there left out
+   !> Complete the state at the end of contact, without the recoil in the plate's velocity there
    pure subroutine complete(impact, recoil, trajectory, n, theta, node)
       type(impact_t), intent(in) :: impact
-      !> What C(oo) F' of a layer adds to U' at nodes n - 2, n - 1 and n [m/s]
+      !> Recoil C(oo) F' in U' of a layer at nodes n - 2, n - 1 and n [m/s]
       real(wp), intent(in) :: recoil(-1:1)
       type(trajectory_t), intent(in) :: trajectory
-      !> Node behind the end
+      !> First node after the end
       integer, intent(in) :: n
-      !> Position of the end in the step before, 0 .. 1
+      !> Position of the end in the step to node n, 0 .. 1
       real(wp), intent(in) :: theta
-      !> State, of which time, impulse and displacement of the sphere are set
+      !> State; on entry its time, impulse and displacement of the sphere are set
       real(wp), intent(inout) :: node(columns)
 
       real(wp) :: drift(-1:1)
@@ -154,7 +155,7 @@ contains
       node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
    end subroutine complete
 
-   !> Cubic through values and slopes at both ends of a step
+   !> Cubic through the values and slopes at both ends of a step
    pure function hermite(a, b, value, slope, x) result(y)
       !> State at the start
       real(wp), intent(in) :: a(columns)
@@ -173,9 +174,9 @@ contains
          + (b(col_time) - a(col_time))*x*(1.0_wp - x)*(a(slope)*(1.0_wp - x) - b(slope)*x)
    end function hermite
 
-   !> Weights for integrals over the contact: trapezoids on the equal steps with both ends corrected
-   !> by the first difference, with a dashpot the start for integrands in powers of t^(n-1); on the
-   !> last step, which is shorter, the parabola through the last three nodes
+   !> Weights for integrals over the contact: the trapezoidal rule on the equal steps, corrected at
+   !> both ends by the first difference (Gregory), with a dashpot by `start_weights` at the start;
+   !> on the shorter last step, the parabola through the last three nodes
    pure subroutine set_weights(impact, dt, trajectory)
       type(impact_t), intent(in) :: impact
       !> Time step [s]
@@ -189,7 +190,7 @@ contains
       associate (w => trajectory%weight)
          w(0:n) = 0.5_wp*dt
          if (n < 2) return
-         ! trapezoids up to node n - 1
+         ! trapezoidal rule up to node n - 1
          w(1:n - 2) = dt
          w(n) = 0.0_wp
          if (n >= 6) then
@@ -205,12 +206,12 @@ contains
       end associate
    end subroutine set_weights
 
-   !> What the first four nodes must add to trapezoids over unit steps for integrands 1, t^(n-1), t
-   !> and t^n, such as the force of a dashpot has at first: a sum over t^p misses zeta(-p). Where n
-   !> is next to an integer such integrands are smooth
+   !> Corrections to the trapezoidal rule with unit steps for integrands that start as a sum of
+   !> 1, t^(n-1), t and t^n, as the force of a dashpot does: for t^p the rule is too large by
+   !> zeta(-p). If n is close to an integer these are smooth and Gregory's correction is enough
    pure function start_weights(law) result(weight)
       type(contact_law_t), intent(in) :: law
-      !> Weights of nodes 0 .. 3
+      !> Corrections to the weights of nodes 0 .. 3
       real(wp) :: weight(4)
 
       real(wp) :: p, a, b, c, d(2)
@@ -218,7 +219,8 @@ contains
       p = law%exponent - 1.0_wp
       weight = [-1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]/12.0_wp
       if (abs(p - anint(p)) < next_to_integer) return
-      ! with v_j = w_j j^p: sum v_j = a, sum v_j j^(1-p) = a + b, sum v_j j = a + c
+      ! for the corrections w_j, with v_j = w_j j^p:
+      ! sum v_j = a, sum v_j j^(1-p) = a + b, sum v_j j = a + c
       a = -zeta(-p)
       b = 1.0_wp/12.0_wp - a
       c = -zeta(-law%exponent) - a
@@ -230,7 +232,7 @@ contains
       weight(1) = -sum(weight(2:4))
    end function start_weights
 
-   !> Riemann's zeta function at -2 < s < 0 by the sum formula of Euler and Maclaurin
+   !> Riemann's zeta function for -2 < s < 0 by the Euler-Maclaurin formula
    pure function zeta(s)
       !> Argument
       real(wp), intent(in) :: s

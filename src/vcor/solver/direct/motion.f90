@@ -1,17 +1,17 @@
-!> Equation of motion in product integration: how the motion at a node follows from the force there
+!> Equation of motion in product integration: the motion at a node as a function of the force there
 !>
-!> Eq. (2) integrated twice, s = v0 t + g t^2/2 - J/m - U with I' = F and J' = I, is linear in the
-!> force F at the newest node, whatever the plate. Its deflection and velocity are
+!> Eq. (2) integrated twice is s = v0 t + g t^2/2 - J/m - U with I' = F and J' = I. For every kind
+!> of plate it is linear in the force F at the newest node. The plate's deflection and velocity are
 !>
 !>     constant, relaxing   U = alpha I,   U' = alpha F + alpha' I,   Eqs. (2) and (3)
 !>     hereditary           U = alpha I + sum_j W_{n-j} dJ_j,   U' = alpha F + sum_j W_{n-j} dI_j
 !>     frozen               U' = int alpha F' dt = alpha F - D,   D = int alpha' F dt
 !>     body                 U = C(oo) F + sum_j W_{n-j} dI_j,   U' = C(oo) F' + sum_j W_{n-j} dF_j
 !>
-!> with I and J as parabolas over each step, and the memory psi of the hereditary plate integrated
-!> exactly, as the kernel of the contact is; for the W of a layer see `layer_weights`. The drift D
-!> begins with the power of time that kernel and plate give it: no parabola. A dashpot's impulse,
-!> viscosity*u, is known apart from the force that is integrated.
+!> I and J are parabolas over each step. The memory psi of the hereditary plate is integrated
+!> exactly, like the kernel of the contact; `layer_weights` gives the W of a layer (body). The rate
+!> of D starts as a power of t that depends on kernel and plate, so the first steps have a rule of
+!> their own. A dashpot's impulse is exactly viscosity*u, so its force is not integrated.
 module vcor_solver_direct_motion
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
@@ -23,15 +23,15 @@ module vcor_solver_direct_motion
 
    public :: motion_t
 
-   !> An integral over time: its value, and the integrand at the last node and the one before
+   !> Integral over time up to a node, with the integrand at that node and the one before
    type :: integral_t
-      !> Value
+      !> Value of the integral
       real(wp) :: value = 0.0_wp
-      !> Integrands
+      !> Integrand at the last node and at the one before
       real(wp) :: last = 0.0_wp, before = 0.0_wp
    end type integral_t
 
-   !> Motion of both bodies at the node that is being solved
+   !> Motion of both bodies at the node being solved
    type :: motion_t
       !> Time [s]
       real(wp) :: t = 0.0_wp
@@ -39,43 +39,45 @@ module vcor_solver_direct_motion
       real(wp) :: indentation(2) = 0.0_wp
       !> s' = velocity(1) - velocity(2)*F [m/s], [m/(N s)]
       real(wp) :: velocity(2) = 0.0_wp
-      !> Plate parameter alpha [m/(N s)], W_0 of a layer
+      !> Plate parameter alpha, for a layer W_0 [m/(N s)]
       real(wp) :: alpha = 0.0_wp
-      !> What a layer's recoil adds to U', C(oo) F', at the last three nodes, the newest last [m/s]
+      !> Recoil of a layer, the term C(oo) F' of U', at the last three nodes, newest last [m/s]
       real(wp) :: recoil(3) = 0.0_wp
-      !> Weight of the node in integrals over time [s]
+      !> Weight of the newest node in integrals over time [s]
       real(wp) :: weight = 0.0_wp
       !> Impulse [N s] and its integral [N s2], once the node is solved
       real(wp) :: impulse = 0.0_wp, second_impulse = 0.0_wp
       !> Time step [s]
       real(wp), private :: dt = 0.0_wp
-      !> Rule for integrals over the step, from its end, its start and the node before [s]
+      !> Weights of the end of the step, its start and the node before, for integrals over it [s]
       real(wp), private :: rule(3) = 0.0_wp
-      !> The same for the drift
+      !> The same weights for the drift D [s]
       real(wp), private :: drift_rule(3) = 0.0_wp
-      !> Rate of alpha [m/(N s2)]
+      !> Rate alpha' [m/(N s2)]
       real(wp), private :: alpha_rate = 0.0_wp
-      !> Integral of the force without a dashpot's, and of the impulse
+      !> Integral of the force without a dashpot's [N s], and of the whole impulse [N s2]
       type(integral_t), private :: force, whole
-      !> Integrals of a frozen plate: of alpha F, of alpha' F, which is the drift, and of the drift
+      !> Integrals for a frozen plate: of alpha F [m], of alpha' F (the drift D) [m/s], of D [m]
       type(integral_t), private :: push, drift, lag
-      !> Whether the plate is the frozen one
+      !> Whether the plate is frozen
       logical, private :: frozen = .false.
-      !> Half of what alpha rises by in a step that does not resolve alpha', otherwise 0 [m/(N s)],
-      !> and alpha' at the last two nodes [m/(N s2)]
+      !> Half the rise of alpha over the step if the step does not resolve alpha', otherwise 0
+      !> [m/(N s)]; alpha' at nodes n - 1 and n - 2 [m/(N s2)]
       real(wp), private :: half_rise = 0.0_wp, rates(2) = 0.0_wp
-      !> Power of t with which the rate of the drift begins, and whether alpha' is finite there
+      !> Exponent p of the rate of the drift, alpha' F ~ t^p near t = 0
       real(wp), private :: power = 0.0_wp
+      !> Whether alpha' is finite at t = 0
       logical, private :: smooth = .false.
-      !> What a hereditary plate remembers
+      !> Weights W_i of the memory of a hereditary plate or a layer
       type(convolution_t), private :: memory
-      !> Whether it is a layer, and its C(oo) [m/N]
+      !> Whether the plate is a layer
       logical, private :: layered = .false.
+      !> C(oo) of the layer [m/N]
       real(wp), private :: instant = 0.0_wp
-      !> Force at the last node [N]
+      !> Force at the last node, with the dashpot's [N]
       real(wp), private :: last_force = 0.0_wp
-      !> Differences from node to node for the memory: of J [N s2] in U and I [N s] in U', for a
-      !> layer of I and F [N]
+      !> Differences from node to node that the memory weights multiply in U and in U': dJ [N s2]
+      !> and dI [N s], for a layer dI [N s] and dF [N]
       real(wp), allocatable, private :: in_u(:), in_rate(:)
    contains
       procedure :: prepare
@@ -87,7 +89,7 @@ module vcor_solver_direct_motion
 
 contains
 
-   !> Make room for `steps` steps, what is there stays
+   !> Make room for `steps` steps and set the memory weights; steps already taken are kept
    subroutine prepare(self, impact, dt, steps)
       class(motion_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -112,16 +114,17 @@ contains
       call lengthen(self%in_rate, 1, steps)
    end subroutine prepare
 
-   !> Go to node n: its rule, and all integrals but for the share of this node
+   !> Advance to node n: choose the rule for the step and add to each integral all but the share of
+   !> node n itself
    pure subroutine advance(self, impact, n, stiffness, viscosity)
       class(motion_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
-      !> dF/ds [N/m] and the dashpot's [N s/m] at the last node
+      !> dF/ds [N/m] and the dashpot's dF/ds' [N s/m], both at the last node
       real(wp), intent(in) :: stiffness, viscosity
 
-      ! rules for the integral over a step, from its end, its start and the node before
+      ! weights of the end of the step, its start and the node before
       real(wp), parameter :: adams_moulton(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
       real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
       real(wp) :: response, last_alpha, rise
@@ -158,13 +161,13 @@ contains
       self%drift%value = self%drift%value + self%half_rise*self%last_force
    end subroutine advance
 
-   !> Set the motion at node n as a function of the force there
+   !> Set the motion at node n as a linear function of the force there
    pure subroutine respond(self, impact, n, dashpot)
       class(motion_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
-      !> Impulse of a dashpot, as far as it is known [N s]
+      !> Known part of a dashpot's impulse [N s]
       real(wp), intent(in) :: dashpot
 
       real(wp) :: i, j, weight, rate, plate, plate_velocity, per_force
@@ -204,17 +207,17 @@ contains
       end associate
    end subroutine respond
 
-   !> The velocity s' at node n with the recoil C(oo) F' of a layer, F' = kappa u' - (kappa u - F)':
-   !> what is in brackets is smooth, and its rate is that of a parabola
+   !> Correct the velocity s' at node n for the recoil C(oo) F' of a layer. In
+   !> F' = kappa u' - (kappa u - F)' the bracket is smooth; its rate is taken from a parabola
    pure subroutine with_recoil(self, n, kappa, slope, du, force, speed)
       class(motion_t), intent(inout) :: self
       !> Node
       integer, intent(in) :: n
-      !> About dF/du [N/m^1.5], 0 where the force is no function of u
+      !> Approximate dF/du [N/m^1.5], 0 where the force does not depend on the newest u
       real(wp), intent(in) :: kappa
       !> du/ds at the node [m^0.5]
       real(wp), intent(in) :: slope
-      !> Differences of u up to the node [m^1.5]
+      !> Differences of u from node to node, up to node n [m^1.5]
       real(wp), intent(in) :: du(:)
       !> Force at the node [N]
       real(wp), intent(in) :: force
@@ -231,7 +234,7 @@ contains
       self%recoil(3) = without - speed
    end subroutine with_recoil
 
-   !> Take the force at node n in
+   !> Complete all integrals with the force found at node n
    pure subroutine accept(self, n, force, dashpot, drag)
       class(motion_t), intent(inout) :: self
       !> Node
@@ -264,7 +267,7 @@ contains
       call complete(self%lag, self%rule, self%drift%value)
    end subroutine accept
 
-   !> Go on with an integral to the next node, but for the share of that node
+   !> Extend an integral to the next node, without the share of that node
    pure subroutine go_on(integral, rule)
       type(integral_t), intent(inout) :: integral
       !> Rule for the step [s]
@@ -273,7 +276,7 @@ contains
       integral%value = integral%value + rule(2)*integral%last + rule(3)*integral%before
    end subroutine go_on
 
-   !> Complete an integral by the share of the node
+   !> Add the share of the newest node to an integral
    pure subroutine complete(integral, rule, integrand)
       type(integral_t), intent(inout) :: integral
       !> Rule for the step [s]
@@ -286,18 +289,18 @@ contains
       integral%last = integrand
    end subroutine complete
 
-   !> Power of t with which the rate of a frozen plate's drift, alpha' F, begins: alpha' is infinite
-   !> at first contact for a continuous spectrum, and F = int k u' goes with t^(n-1) int k
+   !> Exponent p of the drift rate of a frozen plate, alpha' F ~ t^p near t = 0: alpha' can be
+   !> infinite there if the spectrum is continuous, and F = int k u' ~ t^(n-1) int k
    pure subroutine find_power(impact, dt, power, smooth)
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Power, of the first two steps
+      !> Exponent p, from the ratio of values at 2 dt and dt
       real(wp), intent(out) :: power
-      !> Whether alpha' is finite: then a step that is too long for it has no power
+      !> Whether alpha' is finite at t = 0; if so it is left out of p, as dt may not resolve it
       logical, intent(out) :: smooth
 
-      ! a step that resolves all, and a ratio of alpha' that is one
+      ! a time of early*dt resolves alpha'; a ratio of alpha' above `one` counts as 1
       real(wp), parameter :: early = 1.0e-9_wp, one = 0.9999_wp
 
       smooth = ratio_of_rates(early*dt) > one
@@ -307,7 +310,7 @@ contains
 
    contains
 
-      !> alpha' at 2 t over that at t
+      !> Ratio alpha'(2 t)/alpha'(t)
       pure real(wp) function ratio_of_rates(t)
          real(wp), intent(in) :: t
 
@@ -316,20 +319,20 @@ contains
       end function ratio_of_rates
    end subroutine find_power
 
-   !> Rule for the integral over step n, from its end, its start and the node before, that is exact
-   !> for t^power times a parabola, on the first two steps times what can be told from fewer nodes
+   !> Weights of the end of step n, its start and the node before, for an integral over the step;
+   !> exact for t^power times a constant on step 1, a linear function on step 2, then a parabola
    pure function power_rule(n, power) result(rule)
-      !> Step
+      !> Step, >= 1
       integer, intent(in) :: n
-      !> Power, > -1
+      !> Exponent of t, > -1
       real(wp), intent(in) :: power
-      !> The rule, over the step
+      !> Weights, in units of the step
       real(wp) :: rule(3)
 
       real(wp) :: moment(0:2), x
       integer :: k
 
-      ! of (t - n)^k t^power
+      ! moments of (t - n)^k t^power over the step, t in steps: first of t^k t^power, then shifted
       x = real(n, wp)
       do k = 0, 2
          moment(k) = (x**(power + real(k + 1, wp)) - (x - 1.0_wp)**(power + real(k + 1, wp))) &

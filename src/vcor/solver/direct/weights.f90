@@ -1,5 +1,5 @@
-!> Weights of the sums over the past in product integration: the kernel integrated exactly over each
-!> step, times u' that changes linearly there
+!> Weights W_i of the sums over the past in product integration, F_n = sum_j W_{n-j} du_j with
+!> du_j = u_j - u_{j-1}: u' is linear over each step and the kernel times u' is integrated exactly
 module vcor_solver_direct_weights
    use vcor_constants, only : pi
    use vcor_impact_plate, only : plate_t
@@ -13,10 +13,10 @@ module vcor_solver_direct_weights
 
    public :: contact_kernel_t, layer_weights, memory_weights, square_weights
 
-   !> Parts of a step next to t = 0
+   !> Number of parts into which the Newton-Cotes rule divides each step near t = 0
    integer, parameter :: parts = ubound(newton_cotes, 1)
 
-   !> Kernel of the contact: weights W_i = w_i + v_i - v_{i-1} with w_i the mean of the kernel over
+   !> Kernel of the contact with its weights W_i = w_i + v_i - v_{i-1}: w_i is the mean of k over
    !> step i and v_i = int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta
    type, extends(convolution_t) :: contact_kernel_t
       !> Time step [s]
@@ -32,7 +32,7 @@ module vcor_solver_direct_weights
 
 contains
 
-   !> Compute the weights
+   !> Compute the weights of the contact kernel
    pure subroutine prepare(self, impact, dt, n)
       class(contact_kernel_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -53,12 +53,13 @@ contains
       call self%set(weights)
    end subroutine prepare
 
-   !> Mean of the kernel over the later part of a step in t1, by that over the step and its slope
+   !> Mean of k(t - x) over the later part in x of the step that t1 lies in, from the mean over the
+   !> whole step and the slope between its neighbours
    pure function late_mean(self, i, position) result(mean)
       class(contact_kernel_t), intent(in) :: self
-      !> Step, counted from t = 0 of the kernel, > 0
+      !> Step of the kernel, whose argument runs from i dt to (i + 1) dt, i > 0
       integer, intent(in) :: i
-      !> Where the part begins, 0 .. 1
+      !> Start of the part within the step, 0 .. 1
       real(wp), intent(in) :: position
       !> Mean [N/m^1.5]
       real(wp) :: mean
@@ -66,7 +67,7 @@ contains
       mean = self%mean(i) + 0.25_wp*position*(self%mean(i - 1) - self%mean(i + 1))
    end function late_mean
 
-   !> Weights W_i of the memory of a hereditary plate
+   !> Weights W_i of the memory psi of a hereditary plate
    pure function memory_weights(plate, dt, n) result(weight)
       type(plate_t), intent(in) :: plate
       !> Time step [s], > 0
@@ -92,12 +93,12 @@ contains
          weight, moment)
    end function memory_weights
 
-   !> Weights W_i of a layer, U - C(oo) F = sum_j W_{n-j} (I_j - I_{j-1}), by the convolution
-   !> quadrature of the two stages of Radau IIA, of third order: with the power series of
-   !> f(s) = s (C(s) - C(oo)) at the matrix s = Delta(zeta)/dt, Delta = A^-1 - zeta A^-1 1 e_2^T.
-   !> C. Lubich, A. Ostermann, Math. Comp. 60 (1993) 105. Only values of C are needed, to the right
-   !> of the imaginary axis by the more the higher the frequency; what rings is damped only where
-   !> a step does not resolve it. I at the first stage is that of the parabola through the nodes
+   !> Weights W_i of a layer, U - C(oo) F = sum_j W_{n-j} (I_j - I_{j-1}), by convolution quadrature
+   !> with the two-stage Radau IIA method of third order: C. Lubich, A. Ostermann, Math. Comp. 60
+   !> (1993) 105. They follow from the power series in zeta of f(s) = s (C(s) - C(oo)) at the matrix
+   !> s = Delta(zeta)/dt, Delta = A^-1 - zeta A^-1 1 e_2^T. Only values of C are needed, at s the
+   !> farther right of the imaginary axis the higher the frequency; only oscillations that a step
+   !> does not resolve are damped. I at the first stage is that of the parabola through the nodes
    pure function layer_weights(plate, dt, n) result(weight)
       type(plate_t), intent(in) :: plate
       !> Time step [s], > 0
@@ -107,7 +108,7 @@ contains
       !> Weights [m/(N s)], shape (0:n-1)
       real(wp) :: weight(0:n - 1)
 
-      ! Cauchy's integral by twice as many points as weights
+      ! coefficients of the series by Cauchy's integral, with twice as many points as weights
       complex(wp) :: turn(0:2*n - 1), zeta, lambda(2), f(2), slope, value
       real(wp) :: radius
       integer :: i, k, at
@@ -121,7 +122,7 @@ contains
          do i = 1, 2
             f(i) = lambda(i)/dt*plate%compliance(lambda(i)/dt)
          end do
-         ! the second row of f(Delta), its first entry times the parabola
+         ! second row of f(Delta): second entry, plus the first times the parabola at stage one
          slope = (f(2) - f(1))/(lambda(2) - lambda(1))
          value = f(1) + slope*(2.5_wp + 2.0_wp*zeta - lambda(1)) &
             - 0.5_wp*slope*(2.0_wp + 8.0_wp*zeta - zeta**2)
@@ -134,22 +135,22 @@ contains
          end do
       end do
       weight = weight*radius**[(-i, i=0, n - 1)]
-      ! the series is that of the differences: what is aliased of them comes to nothing where a
-      ! plate stays where an impulse has moved it
+      ! the series is that of the differences W_i - W_{i-1}: those after the last one, which alias
+      ! into the first ones, vanish for a plate that stays where an impulse has moved it
       do i = 1, n - 1
          weight(i) = weight(i) + weight(i - 1)
       end do
    end function layer_weights
 
-   !> Weights and moments from means. By parts the moment is, with K the integral of k,
-   !> (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it is
-   !> (w_{i-1} - w_{i+1})/24 but for terms of order dt^3 times the third derivative of k
+   !> Weights and moments from means. With K the integral of k, integration by parts gives the
+   !> moment (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it is
+   !> (w_{i-1} - w_{i+1})/24 with an error of order dt^3 times the third derivative of k
    pure subroutine rule_of_means(mean, part, first, n, weight, moment)
       !> Mean of the kernel over each step, shape (0:n)
       real(wp), intent(in) :: mean(0:)
-      !> Integral over each part of the first steps, over dt, shape (0:near*parts-1)
+      !> Integral of k over each part of the first steps, divided by dt, shape (0:near*parts-1)
       real(wp), intent(in) :: part(0:)
-      !> Mean of K over the first step, over dt
+      !> Mean of K over the first step, divided by dt
       real(wp), intent(in) :: first
       !> Number of weights
       integer, intent(in) :: n
@@ -179,10 +180,10 @@ contains
       end do
    end subroutine rule_of_means
 
-   !> Kernel of the second term of the Volterra series, k(x + y) integrated over squares of steps:
-   !> q_i = (1/dt^2) int_0^dt int_0^dt k(i dt + x + y) dx dy is the mean over x of w(i + x/dt), w(i)
-   !> the mean of the kernel over step i. Near t = 0 by quadrature, farther off from the w at whole
-   !> steps, up to their fourth difference
+   !> Weights of the second term of the Volterra series, means of k(x + y) over squares of steps:
+   !> q_i = (1/dt^2) int_0^dt int_0^dt k(i dt + x + y) dx dy is the mean over x of w(i + x/dt), with
+   !> w(i) the mean of the kernel over step i. It is computed by quadrature near t = 0, farther off
+   !> from the cubic through w at four whole steps
    function square_weights(impact, dt, n) result(mean)
       type(impact_t), intent(in) :: impact
       !> Time step [s]
