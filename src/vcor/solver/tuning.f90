@@ -228,7 +228,7 @@ module vcor_solver_tuning
    integer, parameter :: most_for_layers = 8000 ! tested
    !> Multiplications of the springs of a contact that grows again after which a run is given up:
    !> they take seconds
-   real(wp), parameter :: most_work = 3.0e9_wp ! time
+   real(wp), parameter :: most_work = 3.0e9_wp ! tested
    !> Number of steps beyond which a run is not refined for the sake of `cor` of a layer alone
    integer, parameter :: enough_steps = 1000 ! tested
    !> Smallest error of `cor` over that of `cor_sphere`
