@@ -13,17 +13,18 @@ module vcor_numeric_crc
    !> The divisor without its leading term, the lowest power in the highest bit: 0xEDB88320
    integer(int32), parameter :: divisor = -306674912_int32
    integer :: i
-   !> Remainders of the bytes 0 to 255 after division of 0, 1, ... 8 of their bits
+   !> Remainders of the numbers 0 to 15 after division of 0, 1, ... 4 of their bits
+   integer(int32), parameter :: &
+      nibble0(0:15) = [(int(i, int32), i=0, 15)], &
+      nibble1(0:15) = ieor(shiftr(nibble0, 1), iand(nibble0, 1_int32)*divisor), &
+      nibble2(0:15) = ieor(shiftr(nibble1, 1), iand(nibble1, 1_int32)*divisor), &
+      nibble3(0:15) = ieor(shiftr(nibble2, 1), iand(nibble2, 1_int32)*divisor), &
+      nibble4(0:15) = ieor(shiftr(nibble3, 1), iand(nibble3, 1_int32)*divisor)
+   !> Remainders of the bytes 0 to 255 after division of 0, 4 and 8 of their bits
    integer(int32), parameter :: &
       bits0(0:255) = [(int(i, int32), i=0, 255)], &
-      bits1(0:255) = ieor(shiftr(bits0, 1), iand(bits0, 1_int32)*divisor), &
-      bits2(0:255) = ieor(shiftr(bits1, 1), iand(bits1, 1_int32)*divisor), &
-      bits3(0:255) = ieor(shiftr(bits2, 1), iand(bits2, 1_int32)*divisor), &
-      bits4(0:255) = ieor(shiftr(bits3, 1), iand(bits3, 1_int32)*divisor), &
-      bits5(0:255) = ieor(shiftr(bits4, 1), iand(bits4, 1_int32)*divisor), &
-      bits6(0:255) = ieor(shiftr(bits5, 1), iand(bits5, 1_int32)*divisor), &
-      bits7(0:255) = ieor(shiftr(bits6, 1), iand(bits6, 1_int32)*divisor), &
-      bits8(0:255) = ieor(shiftr(bits7, 1), iand(bits7, 1_int32)*divisor)
+      bits4(0:255) = ieor(shiftr(bits0, 4), nibble4(iand(bits0, 15_int32))), &
+      bits8(0:255) = ieor(shiftr(bits4, 4), nibble4(iand(bits4, 15_int32)))
    !> Mask of the lowest byte, and remainders of a byte followed by 1, 2 and 3 zero bytes: with them
    !> four bytes are processed at a time
    integer(int32), parameter :: last = 255_int32, &

@@ -1,6 +1,6 @@
 !> Functions for the Python package alone: fits, which need MINPACK and so are not in libvcor.so,
 !> and the check of a file of results for damage
-module vcor_fit_c_api
+module vcor_c_api_fit
    use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_int, c_null_ptr, &
       c_ptr
    use vcor_c_api, only : c_numbers, c_text, report_error
@@ -141,4 +141,4 @@ contains
 !$omp end critical (vcor_c_api)
    end function vcor_is_altered
 
-end module vcor_fit_c_api
+end module vcor_c_api_fit
