@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Spoil the tuning constants of the solvers one by one.
+"""Spoil the tuning constants one by one.
 
-Builds a copy of the tree in which the constants of src/vcor/material/tuning.f90 and of
-src/vcor/solver/tuning.f90 are variables read from a file, solves the reference impacts of
-tests/reference and counts instructions with each constant multiplied by each factor, and prints a
-table: instructions per impact of the paper's cases over those without a change, impacts that miss the
-reference as tests/unit/test_impacts.f90 counts them, and impacts whose contact time or residual
-indentation misses where that test does not look (receding); last, impacts on layers that miss it as
-tests/cli/test_body_reference.py counts them, and impacts by product integration. With --tests it runs
-these tests of CTest, too, and names those that fail.
+Builds a copy of the tree in which the constants of src/vcor/tuning.f90 are variables read from a
+file, solves the reference impacts of tests/reference and counts instructions with each constant
+multiplied by each factor, and prints a table: instructions per impact of the paper's cases over those
+without a change, impacts that miss the reference as tests/unit/test_impacts.f90 counts them, and
+impacts whose contact time or residual indentation misses where that test does not look (receding);
+last, impacts on layers that miss it as tests/cli/test_body_reference.py counts them, and impacts by
+product integration. With --tests it runs these tests of CTest, too, and names those that fail.
 
     benchmarks/tuning.py [--factors 0.5,2] [--only REGEX] [--build DIR] [--accuracies 1e-6,1e-8,1e-10]
                          [--cases REGEX] [--tests REGEX]
@@ -26,7 +25,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TUNING = {"material": "src/vcor/material/tuning.f90", "solver": "src/vcor/solver/tuning.f90"}
+TUNING = "src/vcor/tuning.f90"
 CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?( !.*)?$",
                       re.MULTILINE)
 FIRST = {
@@ -88,19 +87,16 @@ def build(folder):
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, target)
-    uses = calls = ""
-    for part, name in TUNING.items():
-        text = (folder / name).read_text()
-        cases = "\n".join(f"         case ('{name}')\n            {name} = "
-                          + ("nint(value)" if kind == "integer" else "value")
-                          for name, kind, _ in constants(text))
-        text = CONSTANT.sub(r"   \1, protected :: \2 = \3\4", text)
-        (folder / name).write_text(text.replace("\nend module", READER % cases + "\nend module"))
-        uses += f"   use vcor_{part}_tuning, only : read_{part} => read_tuning\n"
-        calls += f"      call read_{part}()\n"
+    text = (folder / TUNING).read_text()
+    cases = "\n".join(f"         case ('{name}')\n            {name} = "
+                      + ("nint(value)" if kind == "integer" else "value")
+                      for name, kind, _ in constants(text))
+    text = CONSTANT.sub(r"   \1, protected :: \2 = \3\4", text)
+    (folder / TUNING).write_text(text.replace("\nend module", READER % cases + "\nend module"))
+    use = "   use vcor_tuning, only : read_tuning\n   implicit none\n"
     for name, first in FIRST.items():
-        text = (folder / name).read_text().replace("   implicit none\n", uses + "   implicit none\n", 1)
-        (folder / name).write_text(text.replace(first, calls + first, 1))
+        text = (folder / name).read_text().replace("   implicit none\n", use, 1)
+        (folder / name).write_text(text.replace(first, "      call read_tuning()\n" + first, 1))
     subprocess.run(["cmake", "--preset", "release", f"-DVCOR_PYTHON={ROOT / 'build/venv/bin/python'}"],
                    cwd=folder, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", "build/release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
@@ -247,7 +243,7 @@ def main():
         print(f"missed at {name}:", "; ".join(sorted(" ".join(miss) for miss in missed)) or "none")
     print(f"{'constant':24} {'factor':>6} " + " ".join(f"{name:>10}" for name in cases)
           + " ".join(f"{name:>9}" for name in sets) + "   new misses + receding (mended) of each set", flush=True)
-    for name, kind, value in (one for file in TUNING.values() for one in constants((ROOT / file).read_text())):
+    for name, kind, value in constants((ROOT / TUNING).read_text()):
         if not re.search(options.only, name):
             continue
         for factor in map(float, options.factors.split(",")):

@@ -7,9 +7,9 @@
 module vcor_material_exponential_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_tuning, only : fastest_of_data, good_misfit, least_gain, merging_loss, &
-      most_refinements, rates_per_decade, slowest_of_data
    use vcor_numeric_nnls, only : solve_nnls
+   use vcor_tuning, only : fastest_of_data, good_misfit, least_gain, merging_loss, &
+      most_refinements, rates_per_decade, slowest_of_data
    implicit none
    private
 

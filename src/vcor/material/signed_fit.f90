@@ -13,11 +13,11 @@
 module vcor_material_signed_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_tuning, only : digits_lost, earliest_sample, fast_rate, faster_term, &
-      fastest_rate, full_weight, integral_felt, most_digits_lost, rate_spacing, samples_per_rate, &
-      slowest_rate, weight_power, wide_spacing
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
    use vcor_numeric_quadrature, only : graded_rule
+   use vcor_tuning, only : digits_lost, earliest_sample, fast_rate, faster_term, &
+      fastest_rate, full_weight, integral_felt, most_digits_lost, rate_spacing, samples_per_rate, &
+      slowest_rate, weight_power, wide_spacing
    implicit none
    private
 

@@ -16,9 +16,9 @@ module vcor_material_spectrum
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_tuning, only : above_peak, below_peak, farther_above, farther_below, &
-      loosest_sum, most_runs, negligible_tail, share_of_integral, slow_run
    use vcor_material_type, only : material_t
+   use vcor_tuning, only : above_peak, below_peak, farther_above, farther_below, &
+      loosest_sum, most_runs, negligible_tail, share_of_integral, slow_run
    implicit none
    private
 

@@ -17,10 +17,10 @@ module vcor_solver_ive
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
-   use vcor_solver_tuning, only : error_of_echo, error_of_kernel, error_of_layer, kernel_share, &
+   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
+   use vcor_tuning, only : error_of_echo, error_of_kernel, error_of_layer, kernel_share, &
       layer_growth, layer_reach, layer_start, loosest_accuracy, plate_share, shallow_end, &
       window_growth, window_margin
-   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
 

@@ -8,7 +8,7 @@ module vcor_solver_direct_evaluation
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver_equal_steps, only : add_last_step, parabola
-   use vcor_solver_tuning, only : next_to_integer
+   use vcor_tuning, only : next_to_integer
    implicit none
    private
 

@@ -17,7 +17,7 @@ module vcor_solver_direct_motion
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
    use vcor_solver_direct_weights, only : layer_weights, memory_weights
-   use vcor_solver_tuning, only : near_drift, stiff_step, unresolved_rise
+   use vcor_tuning, only : near_drift, stiff_step, unresolved_rise
    implicit none
    private
 

@@ -28,9 +28,9 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_tuning, only : cancelled, enough_steps, first_steps, &
-      last_part, layer_reach, least_part, most_for_all, most_for_layers, most_work, share_of_force
    use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
+   use vcor_tuning, only : cancelled, enough_steps, first_steps, &
+      last_part, layer_reach, least_part, most_for_all, most_for_layers, most_work, share_of_force
    implicit none
    private
 

@@ -15,7 +15,7 @@ module vcor_solver_direct_receding
    use vcor_solver_convolution, only : lengthen
    use vcor_solver_direct_springs, only : springs_t
    use vcor_solver_direct_weights, only : contact_kernel_t
-   use vcor_solver_tuning, only : most_work
+   use vcor_tuning, only : most_work
    implicit none
    private
 

@@ -21,7 +21,7 @@ module vcor_solver_direct_springs
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : lengthen
    use vcor_solver_direct_weights, only : contact_kernel_t
-   use vcor_solver_tuning, only : most_work
+   use vcor_tuning, only : most_work
    implicit none
    private
 

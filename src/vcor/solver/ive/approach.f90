@@ -19,7 +19,7 @@ module vcor_solver_ive_approach
    use vcor_numeric_radau_collocation, only : collocation_t
    use vcor_solver_ive_panel, only : panel_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_tuning, only : closest_to_vertex, gone
+   use vcor_tuning, only : closest_to_vertex, gone
    implicit none
    private
 

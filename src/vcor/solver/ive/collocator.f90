@@ -5,7 +5,7 @@ module vcor_solver_ive_collocator
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
    use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
-   use vcor_solver_tuning, only : near_tolerance, newton_tolerance
+   use vcor_tuning, only : near_tolerance, newton_tolerance
    implicit none
    private
 

@@ -27,7 +27,7 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_rebound, only : follow_rebound
    use vcor_solver_ive_recording, only : begin, earlier_panel_t, find_peaks, record
    use vcor_solver_ive_step, only : step_to
-   use vcor_solver_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
+   use vcor_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
       first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &

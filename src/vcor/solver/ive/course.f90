@@ -9,7 +9,7 @@ module vcor_solver_ive_course
    use vcor_solver_ive_panel, only : panel_t, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_tuning, only : best_time, better, better_power, enough_closings, &
+   use vcor_tuning, only : best_time, better, better_power, enough_closings, &
       longest_growth, time_share_continuous, usual_accuracy
    implicit none
    private

@@ -13,7 +13,7 @@ module vcor_solver_ive_landing
    use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_tuning, only : landing_share, most_iterations, peak_guess, roughly, &
+   use vcor_tuning, only : landing_share, most_iterations, peak_guess, roughly, &
       share_of_square
    implicit none
    private

@@ -12,7 +12,7 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_tuning, only : farthest_closing, farthest_rebound, most_iterations, &
+   use vcor_tuning, only : farthest_closing, farthest_rebound, most_iterations, &
       newton_close, no_better, noticeable_time, slowest_contraction
    implicit none
    private

@@ -37,7 +37,7 @@ module vcor_solver_ive_problem
    use vcor_solver_ive_modes, only : advance_lags, find_response, modes_t
    use vcor_solver_ive_panel, only : move_to_end, panel_t, start_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_tuning, only : rounding_of_condition
+   use vcor_tuning, only : rounding_of_condition
    implicit none
    private
 

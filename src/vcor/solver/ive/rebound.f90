@@ -17,14 +17,14 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_panel, only : plate_gains
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
-   use vcor_solver_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
+   use vcor_solver_type, only : refuse_growth
+   use vcor_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
       end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, end_slow, &
       expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
       margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
       rebound_fast, rebound_growth, rebound_hereditary, rebound_slow, roughly, rounding_per_panel, &
       slowest_fall, smallest_share, sure_growth, &
       tolerable, usual_accuracy
-   use vcor_solver_type, only : refuse_growth
    implicit none
    private
 

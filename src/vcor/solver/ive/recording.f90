@@ -11,7 +11,7 @@ module vcor_solver_ive_recording
    use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_tuning, only : force_better, force_unsure, peak_position
+   use vcor_tuning, only : force_better, force_unsure, peak_position
    implicit none
    private
 

@@ -2,7 +2,7 @@
 module vcor_solver_ive_step
    use vcor_kinds, only : wp
    use vcor_numeric_radau_collocation, only : linear
-   use vcor_solver_tuning, only : owed_length
+   use vcor_tuning, only : owed_length
    implicit none
    private
 
