@@ -1,7 +1,37 @@
+!> Quantities of a row. (A pointer to a procedure inside a program would need an executable stack.)
+module test_verification_quantities
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: weighted_sum, twice_the_first
+
+contains
+
+   !> A sum of restitutions
+   pure function weighted_sum(outcomes) result(value)
+      type(outcome_t), intent(in) :: outcomes(:)
+      real(wp) :: value
+
+      value = sum([1.0_wp, 2.0_wp]*outcomes%cor)
+   end function weighted_sum
+
+   !> Twice the first restitution
+   pure function twice_the_first(outcomes) result(value)
+      type(outcome_t), intent(in) :: outcomes(:)
+      real(wp) :: value
+
+      value = 2.0_wp*outcomes(1)%cor
+   end function twice_the_first
+
+end module test_verification_quantities
+
 !> Judging: rows of the verification table, extrapolation, the comparison of methods
 program test_verification
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
       ieee_quiet_nan, ieee_value
+   use test_verification_quantities, only : twice_the_first, weighted_sum
    use vcor_error, only : error_internal, error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated, contact_sticking
@@ -136,22 +166,6 @@ contains
       call check(verdict%passed, "a measure against an expectation")
       call check_close([verdict%found, verdict%expected], 0.8_wp, rounding, "both of them")
    end subroutine test_judge_of_measures
-
-   !> A sum of restitutions
-   pure function weighted_sum(outcomes) result(value)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: value
-
-      value = sum([1.0_wp, 2.0_wp]*outcomes%cor)
-   end function weighted_sum
-
-   !> Twice the first restitution
-   pure function twice_the_first(outcomes) result(value)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: value
-
-      value = 2.0_wp*outcomes(1)%cor
-   end function twice_the_first
 
    !> No outcome, or one without separation
    subroutine test_judge_of_nothing()
