@@ -1,10 +1,11 @@
 !> Constants of mathematics and physics
 module vcor_constants
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: pi, sqrt_pi, standard_gravity, gas_constant
+   public :: pi, sqrt_pi, standard_gravity, gas_constant, unset
 
    !> Ratio of a circle's circumference to its diameter
    real(wp), parameter :: pi = 3.1415926535897932384626433832795_wp
@@ -14,5 +15,7 @@ module vcor_constants
    real(wp), parameter :: standard_gravity = 9.80665_wp
    !> Molar gas constant [J/(mol K)], exact by definition (SI 2019)
    real(wp), parameter :: gas_constant = 8.31446261815324_wp
+   !> Quiet NaN, for a number that nothing has set
+   real(wp), parameter :: unset = transfer(huge(1_int64), 1.0_wp)
 
 end module vcor_constants

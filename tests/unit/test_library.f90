@@ -2,7 +2,8 @@
 !> of the library. What the procedures compute is tested where they are; here it is that they fit
 !> together
 program test_library
-   use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, &
+      ieee_value
    use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
       contact_resting, contact_separated, contact_sticking, error_file, error_input, &
       error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, fit_t, &
@@ -25,6 +26,7 @@ program test_library
    call suite("library")
    call check(index(version, '.') > 0, "the version has a dot")
    call test_materials()
+   call test_unbuilt()
    call test_impacts()
    call test_refusals()
    call test_case()
@@ -97,6 +99,54 @@ contains
       call check_relative(material%relaxation(1.0_wp), modulus*mega, rounding, &
          what//": modulus at 1 s")
    end subroutine compare
+
+   !> What nothing has built is refused or gives NaN
+   subroutine test_unbuilt()
+      type(prony_t) :: prony, steel
+      type(power_law_t) :: power_law
+      type(cerf_t) :: cerf
+      type(mittag_leffler_t) :: mittag_leffler
+      type(tabulated_t) :: tabulated
+      type(trajectory_t) :: trajectory
+      type(plate_t) :: plate
+      type(contact_modulus_t) :: modulus
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: state(:, :)
+
+      call new_elastic(prony, -1.0_wp, error)
+      call refused(error, error_input, "a negative modulus")
+      call check_unbuilt(prony, "prony")
+      call check_unbuilt(power_law, "power_law")
+      call check_unbuilt(cerf, "cerf")
+      call check_unbuilt(mittag_leffler, "mittag_leffler")
+      call check_unbuilt(tabulated, "table")
+      call new_rigid(steel)
+      call new_contact_modulus(modulus, prony, steel, .true., error)
+      call refused(error, error_input, "an unbuilt sphere")
+      call new_contact_modulus(modulus, steel, tabulated, .false., error)
+      call refused(error, error_input, "an unbuilt block")
+      call new_plate(plate, prony, 0.01_wp, waves_relaxing, error)
+      call refused(error, error_input, "a plate of an unbuilt material")
+      call trajectory%sample(10, state)
+      call check(all(ieee_is_nan(state)), "a trajectory that nothing solved has no state")
+      call check(ieee_is_nan(trajectory%indentation_at(0.0_wp)), "nor an indentation")
+   end subroutine test_unbuilt
+
+   !> Check that the numbers of a material are NaN
+   subroutine check_unbuilt(material, what)
+      class(material_t), intent(in) :: material
+      !> Name of the model
+      character(len=*), intent(in) :: what
+
+      real(wp) :: modulus(1)
+      complex(wp) :: complex_modulus
+
+      call material%relaxation_at([1.0_wp], modulus)
+      complex_modulus = material%complex_modulus((0.0_wp, 1.0_wp))
+      call check(all(ieee_is_nan([material%relaxation(1.0_wp), material%rate(1.0_wp), &
+         material%integral(1.0_wp), material%glassy(), material%rubbery(), modulus, &
+         real(complex_modulus, wp)])), "the moduli of an unbuilt "//what//" are NaN")
+   end subroutine check_unbuilt
 
    !> A steel ball on rubber: every plate, law and pair, by the default and by another method
    subroutine test_impacts()

@@ -97,7 +97,9 @@ contains
             'unknown kind of pair, expected pair_eq1 or pair_series', about='pair')
          if (allocated(error)) return
       end if
-      if (sphere%rigid .and. plate%rigid) then
+      if (.not. (sphere%is_built() .and. plate%is_built())) then
+         call raise(error, error_input, 'a material is empty: no procedure new_... has built it')
+      else if (sphere%rigid .and. plate%rigid) then
          call raise(error, error_input, &
             'sphere and plate are both rigid, expected one that deforms', about='material')
       else if (sphere%rigid) then

@@ -100,6 +100,8 @@ contains
       if (all(waves /= [waves_none, waves_constant, waves_relaxing, waves_frozen, &
           waves_hereditary, waves_body])) call raise(error, error_input, 'unknown kind of waves, ' &
          //'expected one of the constants waves_*', about='waves')
+      if (.not. material%is_built()) call raise(error, error_input, &
+         'the material of the plate is empty: no procedure new_... has built it')
       if (allocated(error) .or. waves == waves_none .or. material%rigid) return
       if (.not. half_thickness > 0.0_wp .and. waves /= waves_body) then
          call raise(error, error_input, 'a plate with waves needs half_thickness > 0 [m]; use ' &

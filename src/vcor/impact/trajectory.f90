@@ -1,6 +1,7 @@
 !> Time course of an impact, as every solver returns it
 module vcor_impact_trajectory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_constants, only : unset
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    implicit none
@@ -254,7 +255,8 @@ contains
    end function misses_by_far
 
    !> State at equal steps of time from first contact to the final node: interpolated by the
-   !> collocation polynomials, or the nodes themselves of a solver with equal steps
+   !> collocation polynomials, or the nodes themselves of a solver with equal steps. Before the
+   !> impact is solved, it is one state of NaN
    pure subroutine sample(self, count, state)
       class(trajectory_t), intent(in) :: self
       !> Number of steps, > 0; has no effect for a solver with equal steps
@@ -266,8 +268,8 @@ contains
       integer :: i, first
 
       if (self%stages == 0) then
-         allocate (state(columns, 0:self%final))
-         state = self%state(:, 0:self%final)
+         allocate (state(columns, 0:self%final), source=unset)
+         if (allocated(self%state)) state = self%state(:, 0:self%final)
          return
       end if
 
@@ -284,7 +286,8 @@ contains
    end subroutine sample
 
    !> Indentation at a time of the contact, by the collocation polynomial or, for equal steps, by
-   !> the cubic through indentations and velocities of the adjacent nodes
+   !> the cubic through indentations and velocities of the adjacent nodes; NaN before the impact is
+   !> solved
    pure function indentation_at(self, time) result(indentation)
       class(trajectory_t), intent(in) :: self
       !> Time since first contact [s], up to that of the last node
@@ -295,6 +298,8 @@ contains
       real(wp) :: c(0:self%stages), step, x
       integer :: i
 
+      indentation = unset
+      if (.not. allocated(self%state)) return
       i = 0
       if (self%stages > 0) then
          call find_panel(self, time, i, c)

@@ -23,7 +23,7 @@ module vcor_material_cerf
    type, extends(fractional_t) :: cerf_t
       private
       !> Parameter b [s^(-1/2)]
-      real(wp) :: beta = 0.0_wp
+      real(wp) :: beta = 1.0_wp
    contains
       procedure :: relaxation
       procedure :: rate
@@ -86,7 +86,7 @@ contains
       else if (x > 0.0_wp) then
          value = self%relaxing*self%beta**2*(erfc_scaled(x) - 1.0_wp/(x*sqrt_pi))
       else
-         value = ieee_value(1.0_wp, ieee_negative_inf)
+         value = self%relaxing*ieee_value(1.0_wp, ieee_negative_inf)
       end if
    end function rate
 

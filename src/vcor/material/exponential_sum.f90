@@ -66,7 +66,8 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%equilibrium + sum(self%moduli*exp(-self%rates*t))
+      modulus = self%equilibrium
+      if (allocated(self%moduli)) modulus = modulus + sum(self%moduli*exp(-self%rates*t))
    end function value
 
    !> Integral from 0 to t, dashpot included
@@ -81,12 +82,14 @@ contains
       integer :: k
 
       ! 1 - exp(-l t) = 2 h/(1 + h), h = tanh(l t/2), which keeps all digits for small l t
+      value = self%viscosity + self%equilibrium*t
+      if (.not. allocated(self%rates)) return
       relaxed = 0.0_wp
       do k = 1, size(self%rates)
          half = tanh(0.5_wp*self%rates(k)*t)
          relaxed = relaxed + self%moduli(k)/self%rates(k)*(2.0_wp*half/(1.0_wp + half))
       end do
-      value = self%viscosity + self%equilibrium*t + relaxed
+      value = value + relaxed
    end function integral
 
    !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s, without pairs
@@ -97,7 +100,8 @@ contains
       !> Complex modulus [Pa]
       complex(wp) :: modulus
 
-      modulus = self%equilibrium + self%viscosity*s + sum(self%moduli*(s/(s + self%rates)))
+      modulus = self%equilibrium + self%viscosity*s
+      if (allocated(self%moduli)) modulus = modulus + sum(self%moduli*(s/(s + self%rates)))
    end function complex_modulus
 
    !> Poles and zeros at s = -x of the complex modulus without pairs,

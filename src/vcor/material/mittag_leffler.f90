@@ -105,6 +105,8 @@ contains
 
       real(wp) :: fall
 
+      value = self%relaxing
+      if (.not. self%is_built()) return
       fall = self%relaxing*self%rule%slope(self%power(t))
       ! a quotient that overflows is minus infinity too
       if (fall < huge(t)*min(t, 1.0_wp)) then

@@ -1,7 +1,8 @@
 !> Fractional Kelvin-Voigt solid, a spring beside a fractional dashpot, which Bagley and Torvik
 !> fitted to BUTYL B252: E(t) = E_0 + C t^-a/Gamma(1 - a)
 module vcor_material_power_law
-   use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
+   use vcor_constants, only : unset
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material_parameter, only : between_0_and_1, check_values, equilibrium_modulus, &
@@ -28,7 +29,7 @@ module vcor_material_power_law
       !> Exponent a
       real(wp) :: exponent = 0.5_wp
       !> C/Gamma(1 - a) [Pa s^a]
-      real(wp) :: factor = 0.0_wp
+      real(wp) :: factor = unset
    contains
       procedure :: relaxation
       procedure :: rate
@@ -71,7 +72,7 @@ contains
       if (t > 0.0_wp) then
          value = self%equilibrium + self%factor*t**(-self%exponent)
       else
-         value = ieee_value(1.0_wp, ieee_positive_inf)
+         value = self%relaxing
       end if
    end function relaxation
 
@@ -86,7 +87,7 @@ contains
       if (t > 0.0_wp) then
          value = -self%exponent*self%factor*t**(-self%exponent - 1.0_wp)
       else
-         value = ieee_value(1.0_wp, ieee_negative_inf)
+         value = -self%relaxing
       end if
    end function rate
 

@@ -3,6 +3,7 @@
 !> the standard linear solid one; a rigid body is an elastic solid of infinite modulus
 module vcor_material_prony
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
+   use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -43,7 +44,7 @@ module vcor_material_prony
    type, extends(material_t) :: prony_t
       private
       !> The series without its dashpot
-      type(exponential_sum_t) :: terms
+      type(exponential_sum_t) :: terms = exponential_sum_t(unset, null(), null())
    contains
       procedure :: relaxation
       procedure :: relaxation_at
@@ -170,6 +171,7 @@ contains
       do j = 1, size(t)
          value(j) = self%terms%equilibrium
       end do
+      if (.not. allocated(self%terms%moduli)) return
       do i = 1, size(self%terms%moduli)
          do j = 1, size(t)
             value(j) = value(j) + self%terms%moduli(i)*exp(-self%terms%rates(i)*t(j))
@@ -185,7 +187,9 @@ contains
       !> Rate [Pa/s], <= 0
       real(wp) :: value
 
-      value = -sum(self%terms%moduli*self%terms%rates*exp(-self%terms%rates*t))
+      value = unset
+      if (allocated(self%terms%moduli)) &
+         value = -sum(self%terms%moduli*self%terms%rates*exp(-self%terms%rates*t))
    end function rate
 
    !> Integral of E from 0 to t: E_0 t + sum E_i (1 - exp(-b_i t))/b_i
@@ -216,7 +220,7 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%terms%equilibrium + sum(self%terms%moduli)
+      modulus = self%terms%value(0.0_wp)
    end function glassy
 
    !> Rubbery modulus E_0

@@ -13,7 +13,7 @@
 !> peak at y_p so narrow that its poles y_p +- i d lie inside the strip; c = 1 - 2 d/pi moves them
 !> to the edge. Rates below all nodes are lumped into a constant, those above them into a dashpot.
 module vcor_material_spectrum
-   use vcor_constants, only : pi
+   use vcor_constants, only : pi, unset
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
@@ -32,9 +32,9 @@ module vcor_material_spectrum
    !> rate or a single peak
    type, abstract, extends(material_t) :: fractional_t
       !> Equilibrium modulus E_0 [Pa]
-      real(wp) :: equilibrium = 0.0_wp
+      real(wp) :: equilibrium = unset
       !> Relaxing modulus E_1 [Pa], infinite for a power
-      real(wp) :: relaxing = 0.0_wp
+      real(wp) :: relaxing = unset
       !> ln of the rate [1/s] at the peak of the spectrum; not allocated for a power
       real(wp), allocatable :: peak
       !> Distance d of the poles from the peak in ln(l), > 0

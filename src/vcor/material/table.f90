@@ -1,5 +1,6 @@
 !> Material given by points of its relaxation modulus, interpolated in logarithms
 module vcor_material_table
+   use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_fit, only : fit_exponentials
@@ -35,9 +36,9 @@ module vcor_material_table
    type, extends(material_t) :: tabulated_t
       private
       !> Time of the first point t_1 [s]
-      real(wp) :: first_time = 1.0_wp
+      real(wp) :: first_time = huge(1.0_wp)
       !> Modulus of the first point E_1 [Pa]
-      real(wp) :: first_modulus = 0.0_wp
+      real(wp) :: first_modulus = unset
       !> Ends of the panels: x at the points, and between points that are far apart, shape (n)
       real(wp), allocatable :: x(:)
       !> y at `x`, shape (n)
@@ -51,7 +52,7 @@ module vcor_material_table
       !> Weights of the quadrature
       real(wp) :: weight(order) = 0.0_wp
       !> Sum of exponentials fitted to the points
-      type(exponential_sum_t) :: terms
+      type(exponential_sum_t) :: terms = exponential_sum_t(unset, null(), null())
       !> Integral up to the first point, of the sum less that of E [Pa s]
       real(wp) :: early_excess = 0.0_wp
    contains
@@ -254,7 +255,7 @@ contains
 
       real(wp) :: x, y, slope
 
-      value = 0.0_wp
+      value = merge(0.0_wp, unset, self%is_built())
       if (t <= self%first_time) return
       x = log(t/self%first_time)
       if (.not. x < self%x(size(self%x))) return
@@ -315,7 +316,8 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%first_modulus*exp(self%y(size(self%y)))
+      modulus = self%first_modulus
+      if (allocated(self%y)) modulus = modulus*exp(self%y(size(self%y)))
    end function rubbery
 
    !> The sum of exponentials fitted to the data

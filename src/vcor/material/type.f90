@@ -1,5 +1,6 @@
 !> Abstract type of a linear viscoelastic material: all that solvers use of it
 module vcor_material_type
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
@@ -11,7 +12,8 @@ module vcor_material_type
 
    public :: material_t
 
-   !> A material. Its modulus does not change after construction, so threads can share it
+   !> A material. Its modulus does not change after construction, so threads can share it; before,
+   !> it is NaN
    type, abstract :: material_t
       !> Name in the case
       character(len=:), allocatable :: name
@@ -46,6 +48,7 @@ module vcor_material_type
       procedure(limit_i), deferred :: rubbery
       !> The modulus as a sum of exponentials
       procedure(exponentials_i), deferred :: exponentials
+      procedure :: is_built
       procedure :: elastic
       procedure :: plane_strain_factor
       procedure :: density
@@ -172,6 +175,14 @@ contains
       if (present(density)) self%mass_density = density
       if (present(poisson_ratio)) self%nu = poisson_ratio
    end subroutine set_constants
+
+   !> Whether the material has been built
+   elemental function is_built(self)
+      class(material_t), intent(in) :: self
+      logical :: is_built
+
+      is_built = .not. ieee_is_nan(self%rubbery())
+   end function is_built
 
    !> Whether the modulus is constant: no relaxation, no flow
    pure function elastic(self)
