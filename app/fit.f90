@@ -20,7 +20,7 @@ module vcor_app_fit
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t
    use vcor_material_moduli, only : sampled_times, time_range_t
-   use vcor_text, only : integer_text, printable
+   use vcor_text, only : integer_text, printable, text_flaw
    use vcor_version, only : version
    use vcor_words, only : suggestion
    implicit none
@@ -91,6 +91,9 @@ contains
          tail = sampled%window%notes//compare_impacts(sampled, fit%data)
       end if
       if (allocated(request%name)) fit%data%name = request%name
+      if (text_flaw(fit%data%name) /= '') call raise(error, error_usage, &
+         'the name of the material: '//text_flaw(fit%data%name)//'; give another one with --name')
+      if (allocated(error)) return
       if (request%reading%poisson_ratio <= incompressible) &
          poisson_ratio = request%reading%poisson_ratio
       remarks = fit_remarks(fit, printable(source)//place_of_shift(sampled), samples)

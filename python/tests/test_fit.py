@@ -136,6 +136,9 @@ def test_no_file_that_was_read_is_replaced(program, tmp_path):
         (([1, 2, 3], [3, 2, 1j]), {}, vcor.InputError, "data: expected numbers"),
         (DATA, {"fix": {"exponent": None}}, vcor.InputError, "exponent: expected a number"),
         (DATA, {"model": 3}, vcor.InputError, "found 3, expected a text"),
+        (DATA, {"name": "a\nb"}, vcor.InputError, "the name of the material: found a line end"),
+        (DATA, {"name": "a\x1bb"}, vcor.InputError, "found the control character 27"),
+        (DATA, {"name": "a\udcffb"}, vcor.InputError, "found a text that is not UTF-8"),
     ],
 )
 def test_errors(data, settings, error, line):

@@ -8,10 +8,13 @@ module vcor_text
 
    public :: lower, canonical_name, integer_text, real_text, quoted
    public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
+   public :: text_flaw
    public :: buffer_t
 
    !> Longest part of a foreign text that a message repeats [bytes]
    integer, parameter :: shown_bytes = 60
+   !> Longest text of a case [bytes]
+   integer, parameter :: longest_text = 4096
    !> Largest magnitude that can be rounded to fewer digits without overflow
    real(wp), parameter :: round_limit = 1.0e300_wp
 
@@ -286,6 +289,25 @@ contains
          if (what /= '') return
       end do
    end function control_in
+
+   !> What is wrong with a text as a value in a case
+   pure function text_flaw(text) result(flaw)
+      !> Any bytes
+      character(len=*), intent(in) :: text
+      !> What was found and what is expected; empty if nothing is wrong
+      character(len=:), allocatable :: flaw
+
+      flaw = ''
+      if (.not. is_utf8(text)) then
+         flaw = "found a text that is not UTF-8, '"//shortened(text)//"'"
+      else if (control_in(text) /= '') then
+         flaw = 'found '//control_in(text)//" in '"//shortened(text) &
+            //"', expected a text that can be read on one line"
+      else if (len(text) > longest_text) then
+         flaw = 'found a text of '//integer_text(len(text))//' bytes, expected at most ' &
+            //integer_text(longest_text)
+      end if
+   end function text_flaw
 
    !> What is wrong with a name of a file; this rule holds wherever files are written. A line end
    !> would leave the comment of a script, an escape sequence would act on the terminal, and some

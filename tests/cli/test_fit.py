@@ -1,6 +1,7 @@
 """vcor fit: data files of all sorts in, a &material group out."""
 
 import json
+import os
 import re
 
 import f90nml
@@ -412,6 +413,14 @@ def test_wrong_options(vcor, words, says):
     assert done.err.startswith("vcor: error: ") and done.err.count("\n") == 1
     for word in says:
         assert word in done.err
+
+
+@pytest.mark.parametrize("name", [b"a\xffb", b"x" * 5000])
+def test_names_that_no_case_may_have(vcor, name):
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    words = ["data.csv", "--model", "sls", "--output", "fit.nml", "--name", os.fsdecode(name)]
+    vcor.refuses("fit", *words, code=USAGE, says=["the name of the material", "--name"])
+    assert not (vcor.folder / "fit.nml").exists()
 
 
 def test_no_data(vcor):

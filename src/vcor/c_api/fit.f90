@@ -13,7 +13,7 @@ module vcor_c_api_fit
    use vcor_io_sample_file, only : read_samples, read_samples_text, reading_t
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models
-   use vcor_text, only : printable
+   use vcor_text, only : printable, text_flaw
    use vcor_words, only : contains_word, suggestion
    implicit none
    private
@@ -72,6 +72,8 @@ contains
       if (.not. contains_word(identifiable_models, wanted)) then
          call raise(trouble, error_usage, "unknown model '"//printable(wanted)//"'; " &
             //suggestion(wanted, identifiable_models))
+      else if (text_flaw(place) /= '') then
+         call raise(trouble, error_usage, 'the name of the material: '//text_flaw(place))
       else if (c_associated(file)) then
          allocate (reading%units(0))
          reading%poisson_ratio = poisson_ratio

@@ -7,7 +7,7 @@ module vcor_case_values
    use vcor_case_real, only : looks_numeric, read_real
    use vcor_material_parameter, only : contains_number, is_computable
    use vcor_kinds, only : wp
-   use vcor_text, only : control_in, integer_text, is_utf8, lower, quoted, real_text, shortened
+   use vcor_text, only : integer_text, lower, quoted, real_text, shortened, text_flaw
    use vcor_words, only : contains_word, nearest_name, spelled
    implicit none
    private
@@ -16,8 +16,6 @@ module vcor_case_values
 
    !> Largest length of a list
    integer, parameter :: longest_list = 1000000
-   !> Longest text [bytes]
-   integer, parameter :: longest_text = 4096
    character(len=*), parameter :: digits = '0123456789'
 
 contains
@@ -197,15 +195,7 @@ contains
       end do
       string = string(:n)
       if (key%choices /= '') string = spelled(key%choices, trim(adjustl(string)))
-      if (.not. is_utf8(string)) then
-         message = "found a text that is not UTF-8, '"//shortened(string)//"'"
-      else if (control_in(string) /= '') then
-         message = 'found '//control_in(string)//" in '"//shortened(string) &
-            //"', expected a text that can be read on one line"
-      else if (len(string) > longest_text) then
-         message = 'found a text of '//integer_text(len(string))//' bytes, expected at most ' &
-            //integer_text(longest_text)
-      end if
+      if (text_flaw(string) /= '') message = text_flaw(string)
    end subroutine convert_string
 
    !> Message about several values for a key that takes one
