@@ -8,7 +8,7 @@ module vcor_text
 
    public :: lower, canonical_name, integer_text, real_text, quoted
    public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
-   public :: text_flaw
+   public :: text_flaw, link_name
    public :: buffer_t
 
    !> Longest part of a foreign text that a message repeats [bytes]
@@ -289,6 +289,19 @@ contains
          if (what /= '') return
       end do
    end function control_in
+
+   !> Name of a column in HDF5 files
+   pure function link_name(name) result(link)
+      character(len=*), intent(in) :: name
+      !> The name with `_` for slashes, which would denote groups
+      character(len=len(name)) :: link
+
+      integer :: i
+
+      do i = 1, len(name)
+         link(i:i) = merge('_', name(i:i), name(i:i) == '/')
+      end do
+   end function link_name
 
    !> What is wrong with a text as a value in a case
    pure function text_flaw(text) result(flaw)

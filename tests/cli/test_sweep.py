@@ -173,6 +173,15 @@ def test_twice_is_refused(vcor, path):
     )
 
 
+def test_names_that_are_the_same_in_hdf5(vcor):
+    """A slash would denote a group there."""
+    text = SLS.replace("'steel'", "'pu/tpu'").replace("'rubber'", "'PU tpu'")
+    groups = [sweep(f"{name}.density", "values = 900, 1000") for name in ("pu/tpu", "pu_tpu")]
+    vcor.write(text + "".join(groups))
+    line = (text + groups[0]).count("\n") + 2
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=["HDF5", "same name"])
+
+
 def test_too_many_points_in_all(vcor):
     long = "start = 1\n stop = 2\n count = 20000"
     vcor.write(SLS + sweep("impact.velocity", long) + sweep("sphere.radius", long))

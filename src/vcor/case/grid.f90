@@ -11,7 +11,7 @@ module vcor_case_grid
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
       row_for_model
-   use vcor_text, only : integer_text, real_text, shortened
+   use vcor_text, only : integer_text, link_name, real_text, shortened
    use vcor_case_unread, only : why_unread
    use vcor_words, only : join_words
    implicit none
@@ -176,9 +176,13 @@ contains
             //"', which the impact does not read: "//reason
       end if
       do i = 1, size(before)
-         if (.not. before(i)%address == axis%address) cycle
-         message = "'"//shortened(path)//"' is swept twice, the first at " &
-            //case%location('sweep', 'parameter', i)
+         if (before(i)%address == axis%address) then
+            message = "'"//shortened(path)//"' is swept twice, the first at " &
+               //case%location('sweep', 'parameter', i)
+         else if (link_name(before(i)%name) == link_name(axis%name)) then
+            message = "'"//shortened(path)//"' and '"//shortened(before(i)%name) &
+               //"' have the same name in HDF5 files, where a slash is '_': rename a material"
+         end if
       end do
       if (allocated(message)) then
          call case%refuse('sweep', 'parameter', item, message, error)

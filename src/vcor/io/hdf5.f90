@@ -39,7 +39,7 @@ module vcor_io_hdf5
       text_column, text_value
    use vcor_kinds, only : wp
    use vcor_sweep_part, only : part_t
-   use vcor_text, only : integer_text
+   use vcor_text, only : integer_text, link_name
    implicit none
    private
 
@@ -472,18 +472,5 @@ contains
 
       if (status < 0 .and. .not. allocated(writer%fault)) writer%fault = what
    end subroutine note
-
-   !> A name that HDF5 accepts
-   pure function link_name(name) result(link)
-      character(len=*), intent(in) :: name
-      !> The name with `_` for slashes, which would denote groups
-      character(len=len(name)) :: link
-
-      integer :: i
-
-      do i = 1, len(name)
-         link(i:i) = merge('_', name(i:i), name(i:i) == '/')
-      end do
-   end function link_name
 
 end module vcor_io_hdf5
