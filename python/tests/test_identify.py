@@ -379,6 +379,15 @@ def test_options_that_are_wrong(tmp_path, capsys, words, said):
     assert ended.value.code == 2 and said in capsys.readouterr().err
 
 
+def test_an_error_for_data_that_have_their_own_is_refused():
+    data = {**columns(), "cor_sigma": np.full(10, 0.01), "contact_time_sigma": np.full(10, 1e-5)}
+    data["contact_time_sigma"][3] = np.nan
+    errors = {"contact_time": 0.01}
+    vcor.identify(guess("sls"), data, ["rubber.alpha"], errors=errors)
+    with pytest.raises(vcor.InputError, match="cor: these data have errors of their own"):
+        vcor.identify(guess("sls"), data, ["rubber.alpha"], errors={**errors, "cor": 0.02})
+
+
 def test_data_that_the_model_does_not_describe_are_noted():
     data = columns()
     data["cor"] = data["cor"] * (1 + 0.1 * (-1) ** np.arange(10))

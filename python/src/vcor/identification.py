@@ -241,6 +241,8 @@ class _Problem:
             if name not in self.quantity:
                 known = ", ".join(dict.fromkeys(self.quantity))
                 raise UsageError(f"--error {name}: the data have no such column, they are {known}")
+            if not np.isnan(sigma[np.equal(self.quantity, name)]).any():
+                raise UsageError(f"--error {name}: these data have errors of their own")
         given = np.array([errors.get(name, np.nan) for name in self.quantity])
         sigma = np.where(np.isnan(sigma), given * scale, sigma)
         missing = np.isnan(sigma)
