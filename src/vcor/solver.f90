@@ -189,6 +189,7 @@ contains
          allocate (auto)
          call new_ive(auto%ive, settings, error)
          if (allocated(error)) return
+         auto%settings = settings
          ! the time step belongs to a method that the user has not requested
          fallback = settings
          fallback%time_step = 0.0_wp

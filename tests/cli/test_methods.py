@@ -404,3 +404,17 @@ def test_the_error_at_the_end_of_an_elastic_impact_is_stated(vcor, accuracy):
     vcor.write(ELASTIC)
     found = vcor.numbers("case.nml", "--set", f"solver.accuracy={accuracy}")
     assert abs(cor(found) - 1.0) <= error(found) <= float(accuracy)
+
+
+@pytest.mark.parametrize("method", ["auto", "ive", "direct"])
+@pytest.mark.parametrize(
+    "coefficient, says",
+    [("-1e4", "makes the force fall as the indentation grows"), ("1e5", "from returning to zero")],
+)
+def test_a_second_volterra_term_that_is_no_correction(vcor, method, coefficient, says):
+    vcor.write(SLS)
+    words = ["--set", f"solver.method={method}", "--set", "solver.volterra_order=2"]
+    words += ["--set", f"solver.volterra_coefficient={coefficient}"]
+    done = vcor("run", "case.nml", *words)
+    assert done.code == NUMERICAL
+    assert says in done.err and "solver.volterra_coefficient nearer to 0" in done.err

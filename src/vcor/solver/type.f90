@@ -101,6 +101,9 @@ contains
          'give a larger solver.accuracy or a shorter solver.time_step']
       character(len=*), parameter :: asked(2) = [character(len=19) :: &
          "that a layer allows", 'asked for']
+      character(len=*), parameter :: fault(2) = [character(len=45) :: &
+         'makes the force fall as the indentation grows', 'keeps the force from returning to zero']
+      real(wp) :: ratio, scale
 
       call solver%solve(impact, trajectory, error)
       if (.not. allocated(error)) then
@@ -118,9 +121,19 @@ contains
          end if
       end if
       if (.not. allocated(error)) return
-      if (error%code /= error_numerical .or. .not. impact%plate%layered()) return
+      if (error%code /= error_numerical) return
+      scale = impact%time_scale()
+      ratio = solver%settings%second_coefficient &
+         *impact%law%u(1.0936_wp*impact%speed_scale(scale)*scale)
+      ! the force u + c2 u^2 falls beyond u = -1/(2 c2); q (c2 q - 1), left at u = 0, is a push if
+      ! the internal variable q exceeds 1/c2
+      if (ratio < -0.5_wp .or. ratio > 1.0_wp) call raise(error, error_numerical, 'the second ' &
+         //'term of the Volterra series, about '//as_text(abs(ratio))//' times the first, ' &
+         //trim(fault(merge(1, 2, ratio < 0.0_wp)))//': give a solver.volterra_coefficient ' &
+         //'nearer to 0')
+      if (.not. impact%plate%layered()) return
       ! a footprint within the contact is stiffer than the contact: the equations have no solution
-      if (impact%plate%footprint < impact%expected_radius(impact%time_scale())) then
+      if (impact%plate%footprint < impact%expected_radius(scale)) then
          call raise(error, error_numerical, 'the footprint, ' &
             //as_text(impact%plate%footprint)//' m, is smaller than the contact becomes, which ' &
             //'has no solution: give a larger plate.footprint, or none')
