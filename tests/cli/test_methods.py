@@ -381,6 +381,18 @@ CANCELLED = """\
 """
 
 
+def test_a_frozen_plate_of_a_table_that_begins_within_a_step(vcor):
+    vcor.write("1e-6, 2e7\n1e-4, 1e7\n1e-3, 4e6\n1e-1, 2e6\n", "data.csv")
+    model = "model = 'table'\n   file = 'data.csv'\n   time_unit = 's'\n   modulus_unit = 'Pa'"
+    start = SLS.index("glassy_modulus")
+    text = SLS.replace(SLS[start : SLS.index("/", start)], "").replace("model = 'sls'", model)
+    vcor.write(edit(text, "plate", "waves", "'frozen'")[0])
+    words = ["case.nml", "--set", "solver.method=direct", "--set"]
+    *runs, exact = (vcor.numbers(*words, f"solver.accuracy=1e-{n}") for n in (6, 7, 8))
+    for run in runs:
+        assert abs(cor(run) - cor(exact)) <= HONEST * error(run)
+
+
 def test_errors_that_cancel_by_chance_are_stated(vcor):
     vcor.write(CANCELLED)
     exact = cor(vcor.numbers("case.nml", "--set", "solver.accuracy=1e-10"))

@@ -303,7 +303,9 @@ contains
       ! a time of early*dt resolves alpha'; a ratio of alpha' above `one` counts as 1
       real(wp), parameter :: early = 1.0e-9_wp, one = 0.9999_wp
 
-      smooth = ratio_of_rates(early*dt) > one
+      ! before the first point of a table alpha' is 0
+      smooth = ratio_of_rates(early*dt) > one &
+         .or. .not. impact%plate%alpha_rate(early*dt) > 0.0_wp
       power = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt)
       if (.not. smooth) power = power*ratio_of_rates(dt)
       power = impact%law%exponent - 1.0_wp + log(max(power, 0.5_wp))/log(2.0_wp)
