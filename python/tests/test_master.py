@@ -176,6 +176,31 @@ def test_curves_that_are_flat_are_not_shifted(tmp_path, seed):
         vcor.master(path)
 
 
+def test_flat_curves_above_others_are_placed_by_their_law(tmp_path):
+    """The plateau of a rubber; in the glass no law of warmer curves holds."""
+    rng = np.random.default_rng(1)
+
+    def rubber(at, t):
+        p = (1j * at * 10 ** (-C1 * (t - 20) / (C2 + t - 20))) ** 0.6
+        found = 1e6 * (1 + p / (1 + p))
+        return found.real * (1 + 0.01 * rng.normal(size=12)), found.imag
+
+    path = tmp_path / "raw.csv"
+    path.write_text(table(f"T [C],{HEAD}", range(20, 120, 10), rubber))
+    found = vcor.master(path, reference_temperature=REFERENCE)
+    placed = np.isnan(found.log_error)
+    assert placed[-2:].all() and not placed[:5].any() and found.law.name == "WLF"
+    above = found.temperatures - REFERENCE
+    off = found.log_shift + C1 * above / (C2 + above)
+    assert np.abs(np.diff(off)[placed[1:]]).max() < 0.1
+    assert "373.15 and 383.15 K are too flat" in str(found)
+    assert "by law: these steps are those of WLF" in str(found)
+    assert found.as_dict()["log10_shift_error"][-1] is None
+    last = vcor.master(path, reference_temperature=383.15)
+    assert np.isnan(last.log_error[:5]).all() and last.log_error[-1] == 0
+    assert np.allclose(last.log_shift - last.log_shift[0], found.log_shift)
+
+
 @pytest.mark.parametrize("unit", ["degC", "°C", "deg C", "Celsius"])
 def test_units_of_temperatures(tmp_path, unit):
     path = tmp_path / "raw.csv"

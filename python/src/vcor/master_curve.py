@@ -95,12 +95,15 @@ class Master:
     """A master curve; `str` is the report of the command."""
 
     reference_temperature: float
-    #: Temperatures [K], log10 of the shift factors and their standard errors, shape (n,)
+    #: Temperatures [K], log10 of the shift factors and their standard errors, shape (n,); the error
+    #: is nan for curves that the law places
     temperatures: Floats
     log_shift: Floats
     log_error: Floats
     laws: tuple[Law, ...]
     curves: tuple[Curve, ...]
+    #: What was found at pairs of temperatures whose step is that of the law
+    flat: tuple[str, ...] = ()
 
     def curve(self) -> tuple[Floats, ...]:
         """Reduced frequency and moduli, or reduced time and modulus, in rising order.
@@ -155,18 +158,21 @@ class Master:
         lines = [f"reference temperature {kelvin:.2f} K ({kelvin - ZERO_C:.2f} C)", ""]
         lines.append(f"{'T [K]':>10s}{'T [C]':>10s}{'log10 a_T':>12s}{'error':>8s}")
         lines += [
-            f"{t:10.2f}{t - ZERO_C:10.2f}{shift:12.4f}{error:8.4f}"
+            f"{t:10.2f}{t - ZERO_C:10.2f}{shift:12.4f}"
+            + ("  by law" if math.isnan(error) else f"{error:8.4f}")
             for t, shift, error in zip(
                 self.temperatures, self.log_shift, self.log_error, strict=True
             )
         ]
+        if self.law and self.flat:
+            lines += ["", *self.flat, f"by law: these steps are those of {self.law.name}"]
         for law in self.laws:
             constants = ", ".join(
                 f"{name} {value:.5g} +- {law.errors[name]:.2g} {_UNITS[name]}".strip()
                 for name, value in law.values.items()
             )
             lines += ["", f"{law.name}: {constants}"]
-            if len(law.values) < len(self.temperatures) - 1:
+            if len(law.values) < len(self.temperatures) - 1 - len(self.flat):
                 lines.append(f"   misses the steps between temperatures by {law.rms:.2g} decades, "
                              f"{law.misfit:.2g} times their errors")  # fmt: skip
             else:
@@ -232,7 +238,8 @@ def master(
     InputError
         The files have no moduli at two or more temperatures.
     NumericalError
-        Two neighbouring temperatures have no storage or relaxation modulus in common.
+        Two neighbouring temperatures have no storage or relaxation modulus in common, or are too
+        flat to tell their shift and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     ratio = ratio_of(poisson_ratio)
@@ -258,25 +265,39 @@ def master(
             raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, the "
                              f"nearest are at {temperatures[middle]:.2f} K{slip}")  # fmt: skip
     pairs = zip(curves[:-1], curves[1:], strict=True)
-    steps, variances = np.array([_step(*pair) for pair in pairs]).T
+    found = [_step(*pair) for pair in pairs]
+    steps, variances = np.array([one[:2] for one in found]).T
     steps, errors = steps / math.log(10), np.sqrt(variances) / math.log(10)
-    shift = np.concatenate([[0.0], np.cumsum(steps)])
-    variance = np.concatenate([[0.0], np.cumsum(errors**2)])
     reference = float(temperatures[middle])
     starts = {
         "WLF": {"wlf_c1": 17.44, "wlf_c2": 51.6 - float(np.min(temperatures - reference))},
         "Arrhenius": {"activation_energy": 1e5},
     }
-    laws = [
+    fits = (
         _law(name, start, temperatures, steps, errors, reference) for name, start in starts.items()
-    ]
+    )
+    laws = tuple(filter(None, fits))
+    told = tuple(one[2] for one in found if one[2])
+    seen = np.isfinite(steps)
+    if told:
+        # in the glass, below all steps that are seen, the law of the steps above does not hold
+        best = min(laws, key=lambda one: one.misfit, default=None)
+        if not (seen[0] and best and best.misfit < FOLLOWS and len(best.values) < seen.sum()):
+            raise NumericalError(f"{told[0]}; expected data without one of the two")
+        law = _shift(list(best.values.values()), temperatures, reference)
+        steps = np.where(seen, steps, np.diff(law))
+    shift, variance, unseen = (
+        np.concatenate([[0.0], np.cumsum(one)])
+        for one in (steps, np.where(seen, errors, 0.0) ** 2, 1.0 - seen)
+    )
     return Master(
         reference,
         temperatures,
         shift - shift[middle],
-        np.sqrt(np.abs(variance - variance[middle])),
-        tuple(filter(None, laws)),
+        np.where(unseen == unseen[middle], np.sqrt(np.abs(variance - variance[middle])), np.nan),
+        laws,
         tuple(curves),
+        told,
     )
 
 
@@ -369,8 +390,8 @@ def _kelvin(text: str, path: str) -> float:
     return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
 
 
-def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
-    """Change of ln a_T from the colder to the warmer curve, and its variance."""
+def _step(cold: Curve, warm: Curve) -> tuple[float, float, str]:
+    """Change of ln a_T from the colder to the warmer curve, its variance, and why they are nan."""
     y = np.log(np.concatenate([cold.moduli[0], warm.moduli[0]]))
     weight = 1 / np.repeat([cold.scatter(), warm.scatter()], [len(cold.at), len(warm.at)])
     middle, span = np.mean(cold.x), np.ptp(cold.x) + np.ptp(warm.x)
@@ -390,21 +411,19 @@ def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
     dof = max(1, y.size - DEGREE - 2)
     pair = (f"the {'storage' if cold.dynamic else 'relaxation'} moduli at {cold.temperature:.2f} "
             f"and {warm.temperature:.2f} K")  # fmt: skip
+    if max(values[0], values[-1]) < values[best] + UNSURE**2 * max(values[best] / dof, 1.0):
+        told = f"{pair} are too flat for their scatter to tell the shift between them"
+        return math.nan, math.nan, told
     if best in (0, len(trials) - 1):
         raise NumericalError(
             f"{pair} have none in common, by which alone they are shifted; expected more "
             f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
         )
-    if max(values[0], values[-1]) < values[best] + UNSURE**2 * max(values[best] / dof, 1.0):
-        raise NumericalError(
-            f"{pair} are too flat for their scatter to tell the shift between them; expected data "
-            "without one of the two"
-        )
     h = trials[1] - trials[0]
     found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
                             options={"xatol": 1e-8})  # fmt: skip
     curvature = (misfit(found.x + h) + misfit(found.x - h) - 2 * found.fun) / h**2
-    return float(found.x), float(2 * max(found.fun / dof, 1.0) / curvature)
+    return float(found.x), float(2 * max(found.fun / dof, 1.0) / curvature), ""
 
 
 def _shift(values: Sequence[float] | Floats, t: Floats, reference: float) -> Floats:
@@ -421,13 +440,17 @@ def _law(
     name: str, start: dict[str, float], temperatures: Floats, steps: Floats, errors: Floats,
     reference: float,
 ) -> Law | None:  # fmt: skip
-    """A law by least squares of the steps, whose errors are independent; None: too few."""
+    """A law by least squares of the steps, whose errors are independent; None: too few.
+
+    Steps that are nan are left out.
+    """
+    seen = np.isfinite(steps)
 
     def misfit(x: Floats) -> Floats:
         rest: Floats = (np.diff(_shift(np.exp(x), temperatures, reference)) - steps) / errors
-        return rest
+        return rest[seen]
 
-    dof = len(steps) - len(start)
+    dof = int(seen.sum()) - len(start)
     if dof < 0:
         return None
     found = least_squares(misfit, np.log(list(start.values())), max_nfev=500)
@@ -437,7 +460,7 @@ def _law(
     square = 2 * found.cost / max(dof, 1)
     variances = np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * max(1.0, square)
     deviations = values * np.sqrt(variances)
-    rms = float(np.sqrt(np.mean((misfit(found.x) * errors) ** 2)))
+    rms = float(np.sqrt(np.mean((misfit(found.x) * errors[seen]) ** 2)))
     constants, deviations = (
         dict(zip(start, one.tolist(), strict=True)) for one in (values, deviations)
     )
