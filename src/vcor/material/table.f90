@@ -255,7 +255,7 @@ contains
 
       real(wp) :: x, y, slope
 
-      value = merge(0.0_wp, unset, self%is_built())
+      value = merge(0.0_wp, unset, allocated(self%x))
       if (t <= self%first_time) return
       x = log(t/self%first_time)
       if (.not. x < self%x(size(self%x))) return
