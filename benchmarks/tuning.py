@@ -29,7 +29,7 @@ TUNING = "src/vcor/tuning.f90"
 CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?( !.*)?$",
                       re.MULTILINE)
 FIRST = {
-    "src/vcor/material.f90": "      if (data%is_shear) then\n",
+    "src/vcor/material.f90": "      if (allocated(data%unknown)) then\n",
     "tests/unit/harness.f90": "      suite_name = name\n",
 }
 """Where a material is made, which every impact begins with, and where a unit test begins."""
@@ -96,7 +96,9 @@ def build(folder):
     use = "   use vcor_tuning, only : read_tuning\n   implicit none\n"
     for name, first in FIRST.items():
         text = (folder / name).read_text().replace("   implicit none\n", use, 1)
-        (folder / name).write_text(text.replace(first, "      call read_tuning()\n" + first, 1))
+        if text.count(first) != 1:
+            sys.exit(f"{name}: found {text.count(first)} lines '{first.strip()}', expected 1")
+        (folder / name).write_text(text.replace(first, "      call read_tuning()\n" + first))
     subprocess.run(["cmake", "--preset", "release", f"-DVCOR_PYTHON={ROOT / 'build/venv/bin/python'}"],
                    cwd=folder, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", "build/release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
