@@ -1,5 +1,6 @@
 """Plates by elastodynamics, waves = 'body': a layer or a half space."""
 
+import math
 import re
 
 import pytest
@@ -348,3 +349,53 @@ def test_screen(vcor):
     thin = re.sub("'body', footprint = [^ ]*", "'hereditary'", text("layer of glass"))
     vcor.write(thin.replace("half_thickness = 0.002", "half_thickness = 0.01"))
     assert "compare waves = 'body'" in vcor.succeeds("run", "case.nml")
+
+
+@pytest.mark.parametrize("velocity", [1e-2, 1e-3, 1e-4])
+def test_stated_errors_of_slow_impacts(vcor, velocity):
+    """Waves cross the footprint in a ten-thousandth of the contact, faster than the sum of the plate follows."""
+    vcor.write(text("half space").replace(", footprint = 0.00016947256508207135", ""))
+    words = ["--quiet", "--set", f"impact.velocity={velocity}", "--print", "cor,cor_sphere,cor_error"]
+    cor, sphere, error = map(float, vcor.succeeds("run", "case.nml", *words).split())
+    # the face at the end of Hertz's force, k (v (t0 - t))^1.5, moves with v times this, to first order in the waves;
+    # 1.430 is the integral of x^-1/2 d(C(x c_s/a)/C(oo)), by quadrature of the definition of C
+    radius, nu = 0.002, 0.22
+    modulus, mass = 70e9 / (1.0 - nu**2), 7800.0 * 4.0 / 3.0 * math.pi * radius**3
+    stiffness = 4.0 / 3.0 * radius**0.5 * modulus
+    footprint = 1.6 * (radius * 1.0936 * velocity * (mass / (stiffness * velocity**0.5)) ** 0.4) ** 0.5
+    crossing = footprint / (0.5 * modulus * (1.0 - nu) / 2500.0) ** 0.5
+    face = 1.5 * 1.430 * stiffness * (velocity * crossing / math.pi) ** 0.5 / (2.0 * modulus * footprint)
+    assert abs(sphere - cor - face) <= 3.0 * error < 1.2e-2
+
+
+PUNCH = (
+    "&impact velocity = 0.51892 /\n"
+    "&sphere shape = 'punch', punch_radius = 9.7491e-4, mass = 3.1637e-4, material = 'ball' /\n"
+    "&plate material = 'plate', waves = 'body', half_thickness = 2.0542e-3 /\n"
+    "&material name = 'ball', density = 2500.0, poisson_ratio = 0.3, model = 'power_law', "
+    "equilibrium_modulus = 4.917e8, coefficient = 2.6324e7, exponent = 0.5333 /\n"
+    "&material name = 'plate', density = 1007.4, poisson_ratio = 0.25, model = 'prony', "
+    "moduli = 1.5553e7, 6.6654e6, times = 0.031235, 2.1289e-4 /\n"
+)
+BLUNT = (
+    "&impact velocity = 0.1335, gravity = 9.81 /\n"
+    "&sphere shape = 'power', profile_power = 4, profile_coefficient = 1.4147e7, mass = 1.4805e-4, material = 'ball' /\n"
+    "&plate material = 'plate', waves = 'body', half_thickness = 2.0945e-3 /\n"
+    "&material name = 'ball', model = 'rigid' /\n"
+    "&material name = 'plate', density = 1005.6, poisson_ratio = 0.1, model = 'prony', "
+    "moduli = 9.9106e5, 4.2474e5, times = 0.0717, 1.8028e-4 /\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("case", "sphere"),
+    # by method direct, to 3e-8 and 1e-8
+    [(PUNCH, 0.16407237), (BLUNT, 0.28876854)],
+    ids=["flat punch", "blunt body"],
+)
+def test_stated_errors_of_blunt_bodies(vcor, case, sphere):
+    """Their force starts steeper than that of a sphere and contains more of the frequencies that the sum misses."""
+    vcor.write(case)
+    words = ["--quiet", "--print", "cor_sphere,cor_sphere_error"]
+    found, error = map(float, vcor.succeeds("run", "case.nml", *words).split())
+    assert abs(found - sphere) <= 3.0 * error < 3e-5

@@ -550,7 +550,7 @@ contains
          call success(error, "a hereditary plate is built")
          do j = 1, size(window)
             do k = 1, size(accuracy)
-               call plate%response(window(j), accuracy(k), terms, instant, misfit)
+               call plate%response(window(j), 1.5_wp, accuracy(k), terms, instant, misfit)
                do m = 0, 24
                   time = window(j)*10.0_wp**(-0.25_wp*real(m, wp))
                   expected = plate%alpha(0.0_wp) + plate%memory_integral(time)

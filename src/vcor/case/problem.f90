@@ -452,7 +452,8 @@ contains
       type(problem_t), intent(inout) :: self
 
       if (self%impact%plate%layered() .and. self%settings%method /= 'direct') &
-         call self%impact%plate%prepare(self%impact%law%contact_time*self%impact%time_scale())
+         call self%impact%plate%prepare(self%impact%law%contact_time*self%impact%time_scale(), &
+            self%impact%law%exponent)
    end subroutine prepare
 
    !> Coefficient of restitution with a 1.25 times larger disc on the layer

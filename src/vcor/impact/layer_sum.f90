@@ -11,6 +11,9 @@
 !> Beyond the equidistant rates the points leave the line Re s = 2/window, as the rates do:
 !> responses there are damped, and echoes at such frequencies do not affect the motion.
 !>
+!> What an impact feels of the misfit at a frequency depends on the spectrum of its force, which
+!> starts as a power n of time: 3/2 for a sphere, 1 for a flat punch.
+!>
 !> Impacts share fits. A fit is for a window and a band of footprints: its coefficients are found at
 !> several radii in the band and interpolated between them. Windows and bands are steps of geometric
 !> ladders, so that the sum of an impact does not depend on the impacts before it.
@@ -45,6 +48,8 @@ module vcor_impact_layer_sum
       !> Time up to which the sums hold [s]
       real(wp) :: window = 0.0_wp
       integer :: band = 0
+      !> Power n of time as which the force starts, from 1 to 3/2
+      real(wp) :: start = 0.0_wp
       !> Coefficients c_k at the radii: real terms, then real and imaginary parts of the pairs,
       !> times the radius [m2/(N s)], shape (terms, radii)
       real(wp), allocatable :: coefficient(:, :)
@@ -95,13 +100,18 @@ module vcor_impact_layer_sum
       (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp), wp), i_rate=1, beyond), &
       (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp) + step, wp), i_rate=1, beyond)]
 
-   !> Error of the velocity by a dent that continues beyond all rates, over its estimate, measured
-   real(wp), parameter :: beyond_rates = 5.0e-3_wp
+   !> A point beyond all rates. The misfit there is that of a dent that comes faster than the sum:
+   !> of a disc that waves cross in no time, or of a power law. Its weight for the velocity at an
+   !> end where the force is a power of the time left, measured
+   complex(wp), parameter :: far = cmplx(4.0_wp*last, 0.0_wp, wp)
+   real(wp), parameter :: weight_of_far = 5.0e-4_wp
 
-   !> Spectrum of F over frequency w, 1/(1 + (w window/bend)^power), as F starts and ends with a
-   !> power 1.5 of time; exponents for the velocity U' and, between both, for the weights of the fit
-   real(wp), parameter :: bend = 3.0_wp, power = 2.5_wp, power_of_rate = 1.5_wp, &
-      power_of_fit = 2.0_wp
+   !> Spectrum of F over frequency w, 1/(1 + (w window/bend)^(n + 1)), as F starts and ends with the
+   !> power n of time, for bodies sharper than a sphere that of a sphere; the exponent for the
+   !> velocity U' is n, and that for the weights of the fit is between both for a sphere. Contacts
+   !> of blunt bodies are almost as large as the footprint from the start, so their force starts
+   !> steeper, and its spectrum bends later
+   real(wp), parameter :: bend = 3.0_wp, sphere = 1.5_wp, power_of_fit = 2.0_wp
 
 contains
 
@@ -114,20 +124,23 @@ contains
       band = floor(log(footprint)/log(ladder))
    end function band_of
 
-   !> Whether the sums are for a given footprint and window
-   elemental function holds(self, footprint, window)
+   !> Whether the sums are for a given footprint, window and exponent of the contact
+   elemental function holds(self, footprint, window, exponent)
       class(layer_sum_t), intent(in) :: self
       !> Radius [m], > 0
       real(wp), intent(in) :: footprint
       !> Time [s]
       real(wp), intent(in) :: window
+      !> Exponent of the contact, >= 1
+      real(wp), intent(in) :: exponent
       logical :: holds
 
-      holds = .not. abs(self%window - window) > 0.0_wp .and. self%band == band_of(footprint)
+      holds = .not. abs(self%window - window) > 0.0_wp .and. self%band == band_of(footprint) &
+         .and. .not. abs(self%start - min(exponent, sphere)) > 0.0_wp
    end function holds
 
    !> Fit the sums of the band of a footprint
-   pure subroutine new_layer_sum(self, layer, footprint, window)
+   pure subroutine new_layer_sum(self, layer, footprint, window, exponent)
       !> The sums; without coefficients if LAPACK fails
       type(layer_sum_t), intent(out) :: self
       type(layer_t), intent(in) :: layer
@@ -135,18 +148,21 @@ contains
       real(wp), intent(in) :: footprint
       !> Time up to which the sums are to hold [s], > 0
       real(wp), intent(in) :: window
+      !> Exponent of the contact, >= 1
+      real(wp), intent(in) :: exponent
 
       integer, parameter :: middle = (radii + 1)/2
       complex(wp) :: c(points, radii), column(points)
-      complex(wp) :: all(points + 2*beyond), left(points + 2*beyond, radii)
-      real(wp) :: tail, radius(radii), passive(points), size_of_force(points + beyond)
+      complex(wp) :: all(points + 2*beyond + 1), left(points + 2*beyond + 1, radii)
+      real(wp) :: radius(radii), passive(points), size_of_force(points + beyond)
       real(wp), allocatable :: matrix(:, :)
       integer :: i, j
 
       self%window = window
       self%band = band_of(footprint)
+      self%start = min(exponent, sphere)
       radius = ladder**(real(self%band, wp) + 0.5_wp*(1.0_wp + node()))
-      all = [point, echo]/window
+      all = [point, echo, far]/window
       do i = 1, points
          c(i, :) = radius*layer%compliance(all(i), radius, accuracy(i)) - at_once()
          passive(i) = abs(c(i, middle)) + abs(radius(middle)*layer%dent(all(i), radius(middle))) &
@@ -160,11 +176,7 @@ contains
       call least_squares(matrix, 1.0_wp/(passive &
          *(1.0_wp + (abs(point)/bend)**power_of_fit)), c, self%coefficient)
       if (.not. allocated(self%coefficient)) return
-      size_of_force = abs([point, echo(:beyond)])/bend
-      ! a dent that continues beyond all rates, as that of a power law, starts as the root of time
-      tail = 0.0_wp
-      if (.not. abs(at_once()) > 0.0_wp) tail = beyond_rates*radius(middle) &
-         *abs(layer%dent(point(points)/window, radius(middle)))*sqrt(bend/abs(point(points)))
+      size_of_force = abs([point, echo(:beyond)])/(bend*(1.0_wp + sphere - self%start))
       do i = 1, size(all)
          if (i <= points) then
             left(i, :) = -c(i, :)
@@ -178,13 +190,15 @@ contains
       do j = 1, radii
          associate (all_left => abs(left(:points + beyond, j)), size_beyond => &
                     size_of_force(points + 1:), echoes => 0.5_wp &
-                    *abs(left(points + beyond + 1:, j) - left(points + 1:points + beyond, j)))
-            self%misfit(j) = maxval(all_left(:points)/(1.0_wp + size_of_force(:points)**power))
-            self%misfit_of_rate(j) = max(tail, &
-               maxval(all_left/(1.0_wp + size_of_force**power_of_rate)))
-            self%echo(j) = maxval(echoes/(1.0_wp + size_beyond**power))
-            self%echo_of_rate(j) = max(maxval(echoes/(1.0_wp + size_beyond**power_of_rate)), &
-               maxval(all_left(:near)/(1.0_wp + size_of_force(:near)**power_of_rate)))
+                    *abs(left(points + beyond + 1:points + 2*beyond, j) &
+                    - left(points + 1:points + beyond, j)))
+            self%misfit(j) = maxval(all_left(:points) &
+               /(1.0_wp + size_of_force(:points)**(self%start + 1.0_wp)))
+            self%misfit_of_rate(j) = max(weight_of_far*abs(left(size(all), j)), &
+               maxval(all_left/(1.0_wp + size_of_force**self%start)))
+            self%echo(j) = maxval(echoes/(1.0_wp + size_beyond**(self%start + 1.0_wp)))
+            self%echo_of_rate(j) = max(maxval(echoes/(1.0_wp + size_beyond**self%start)), &
+               maxval(all_left(:near)/(1.0_wp + size_of_force(:near)**self%start)))
          end associate
       end do
       self%coefficient = self%coefficient/window

@@ -269,11 +269,13 @@ contains
 
    !> Make the sum of a layer in advance, for the band of its footprint and the window of a contact
    !> time
-   pure subroutine prepare(self, contact_time)
+   pure subroutine prepare(self, contact_time, exponent)
       !> The plate, a layer
       class(plate_t), intent(inout) :: self
       !> Expected contact time [s], > 0
       real(wp), intent(in) :: contact_time
+      !> Exponent of the contact
+      real(wp), intent(in) :: exponent
 
       ! maximum number of sums kept
       integer, parameter :: most = 100
@@ -282,19 +284,21 @@ contains
 
       window = self%window(contact_time)
       if (.not. allocated(self%sums)) allocate (self%sums(0))
-      if (any(self%sums%holds(self%footprint, window))) return
-      call new_layer_sum(sum, self%layer, self%footprint, window)
+      if (any(self%sums%holds(self%footprint, window, exponent))) return
+      call new_layer_sum(sum, self%layer, self%footprint, window, exponent)
       if (size(self%sums) == most) self%sums = [sum]
       self%sums = [self%sums, sum]
    end subroutine prepare
 
    !> Response of a plate with memory as a sum of exponentials, U' = viscosity F + instant F' + int
    !> psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
-   pure subroutine response(self, window, accuracy, terms, instant, misfit)
+   pure subroutine response(self, window, exponent, accuracy, terms, instant, misfit)
       !> The plate, with memory
       class(plate_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
+      !> Exponent of the contact; has an effect for a layer only
+      real(wp), intent(in) :: exponent
       !> Wanted relative accuracy, > 0; has no effect for a layer
       real(wp), intent(in) :: accuracy
       !> psi [m/(N s2)], with alpha [m/(N s)] as its viscosity; `terms%error` is that of the
@@ -312,11 +316,12 @@ contains
       if (allocated(self%layer)) then
          instant = self%layer%instant(self%footprint)
          i = 0
-         if (allocated(self%sums)) i = findloc(self%sums%holds(self%footprint, window), .true., 1)
+         if (allocated(self%sums)) i = findloc(self%sums%holds(self%footprint, window, exponent), &
+            .true., 1)
          if (i > 0) then
             call self%sums(i)%at(self%footprint, terms, misfit)
          else
-            call new_layer_sum(sum, self%layer, self%footprint, window)
+            call new_layer_sum(sum, self%layer, self%footprint, window, exponent)
             call sum%at(self%footprint, terms, misfit)
          end if
       else

@@ -86,8 +86,8 @@ contains
             return
          end if
          if (impact%plate%hereditary()) then
-            call impact%plate%response(window, plate_share*self%accuracy, modes%plate, &
-               modes%instant, misfit)
+            call impact%plate%response(window, impact%law%exponent, plate_share*self%accuracy, &
+               modes%plate, modes%instant, misfit)
             if (impact%plate%layered()) modes%plate%error = misfit%motion*impact%mass/window**2
             if (.not. modes%plate%error < 1.0_wp) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
