@@ -58,6 +58,7 @@ module vcor_impact_problem
       procedure :: first_force
       procedure :: contact_radius
       procedure :: expected_radius
+      procedure :: dent_at_once
       procedure :: springs_back
       procedure :: inelasticity
       procedure :: lasting_inelasticity
@@ -225,6 +226,22 @@ contains
 
       radius = 0.5_wp*self%factor*self%law%slope(indentation)
    end function contact_radius
+
+   !> Share of the contact's dent, at an indentation that grows at once, that a layer does not take
+   !> back, as inertia holds its face: 1 for other plates, > 0 if the impact has a solution
+   elemental function dent_at_once(self, indentation) result(share)
+      class(impact_t), intent(in) :: self
+      !> Indentation [m], >= 0
+      real(wp), intent(in) :: indentation
+      !> Share [-]
+      real(wp) :: share
+
+      share = 1.0_wp
+      if (.not. self%plate%layered()) return
+      ! 0 for a plate that is infinitely stiff at first, whose contact may be infinitely stiff, too
+      if (self%plate%instant() < 0.0_wp) share = 1.0_wp + self%plate%instant()*self%kernel(0.0_wp) &
+         *self%law%slope(indentation)
+   end function dent_at_once
 
    !> Kernel k(t) = K E'(t), Eq. (5)
    elemental function kernel(self, t) result(k)

@@ -112,6 +112,8 @@ contains
          if (.not. outcome%is_finite()) then
             call raise(error, error_numerical, 'the numbers of this impact are beyond all that ' &
                //'can be computed')
+         else if (impact%dent_at_once(outcome%max_indentation) < 0.0_wp) then
+            call refuse_footprint(impact, error)
          else if (trajectory%misses_by_far()) then
             call raise(error, error_numerical, 'the estimated error of cor, ' &
                //as_text(max(outcome%cor_error, outcome%cor_sphere_error)) &
@@ -132,13 +134,21 @@ contains
          //trim(fault(merge(1, 2, ratio < 0.0_wp)))//': give a solver.volterra_coefficient ' &
          //'nearer to 0')
       if (.not. impact%plate%layered()) return
-      ! a footprint within the contact is stiffer than the contact: the equations have no solution
-      if (impact%plate%footprint < impact%expected_radius(scale)) then
-         call raise(error, error_numerical, 'the footprint, ' &
-            //as_text(impact%plate%footprint)//' m, is smaller than the contact becomes, which ' &
-            //'has no solution: give a larger plate.footprint, or none')
-      end if
+      if (impact%plate%footprint < impact%expected_radius(scale)) &
+         call refuse_footprint(impact, error)
    end subroutine solve_impact
+
+   !> Refuse a footprint that takes away more dent than the contact has: the equations have no
+   !> solution, and what a solver finds because it does not resolve the fastest waves is none
+   subroutine refuse_footprint(impact, error)
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_numerical`
+      type(error_t), allocatable, intent(out) :: error
+
+      call raise(error, error_numerical, 'the footprint, '//as_text(impact%plate%footprint) &
+         //' m, is smaller than the contact becomes, which has no solution: give a larger ' &
+         //'plate.footprint, or none')
+   end subroutine refuse_footprint
 
    !> Refuse a receding contact in which t1 grows. On a plate at rest and without weight s' only
    !> falls, and t1' has its sign: there a rising t1 is rounding of a sphere that has come to rest
