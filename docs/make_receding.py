@@ -23,7 +23,7 @@ CURVES = [
     ("hereditary", "boltzmann", "#d62728", "6 4"),
     ("hereditary", "receding", "#d62728", ""),
 ]
-NAMES = {"none": "half space", "hereditary": "plate"}
+NAMES = {"none": "no waves", "hereditary": "thin plate"}
 
 
 def history(waves, law):
