@@ -323,7 +323,5 @@ module vcor_tuning
    !> Share of the changes of a layer's weights after the last one that is aliased into the first
    !> ones; the square root of its inverse amplifies errors of the compliance in the last ones
    real(wp), parameter :: aliased = 1.0e-6_wp ! tested
-   !> Distance of an exponent from an integer that is negligible: the force is smooth at first
-   real(wp), parameter :: next_to_integer = 1.0e-3_wp ! tested
 
 end module vcor_tuning

@@ -669,7 +669,6 @@ contains
       trajectory%state = 0.0_wp
       trajectory%last = nodes
       trajectory%steps = 7
-      trajectory%weight = [1.0_wp, 4.0_wp, 2.0_wp, 4.0_wp, 1.0_wp]*1.0e-4_wp
       do i = 0, nodes
          trajectory%state(col_time, i) = 3.0e-4_wp*real(i, wp)
          trajectory%state(col_force, i) = real(i*(nodes - i), wp)
@@ -677,6 +676,8 @@ contains
          trajectory%state(col_plate_velocity, i) = 0.125_wp*real(i, wp)
          trajectory%state(col_sphere_velocity, i) = 2.0_wp - 0.625_wp*real(i, wp)
       end do
+      trajectory%share = [1.0_wp, 4.0_wp, 2.0_wp, 4.0_wp, 1.0_wp]*1.0e-4_wp &
+         *trajectory%state(col_force, :)
       trajectory%state(col_impulse, nodes) = 0.25_wp
       trajectory%state(col_indentation, nodes) = 1.0e-4_wp
       trajectory%max_indentation = 8.0e-4_wp

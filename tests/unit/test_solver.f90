@@ -346,7 +346,7 @@ contains
       type(trajectory_t) :: trajectory
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
-      real(wp), allocatable :: state(:, :), weight(:)
+      real(wp), allocatable :: state(:, :), share(:)
       real(wp) :: largest
       integer :: n
 
@@ -355,9 +355,9 @@ contains
       outcome = evaluate(problem, trajectory)
       n = trajectory%last
       ! copies, with node 0 the first: the arrays of a trajectory may be longer
-      allocate (state(columns, 0:n), weight(0:n))
+      allocate (state(columns, 0:n), share(0:n))
       state = trajectory%state(:, 0:n)
-      weight = trajectory%weight(0:n)
+      share = trajectory%share(0:n)
       call check_close(state([col_time, col_indentation, col_force, col_impulse, col_sphere, &
          col_plate], 0), 0.0_wp, 0.0_wp, name//": all is zero at first contact")
       call check_relative(state([col_velocity, col_sphere_velocity], 0), problem%velocity, &
@@ -378,12 +378,14 @@ contains
       call check(all(state(col_force, 1:n - 1) > 0.0_wp), name//": the force presses")
       call check_close(state(col_force, n)/outcome%max_force, 0.0_wp, tolerance, &
          name//": and is zero at the end")
-      call check_relative(sum(weight*state(col_force, :)), state(col_impulse, n), tolerance, &
-         name//": the impulse is the integral of the force")
-      call check_relative(sum(weight*state(col_sphere_velocity, :)), state(col_sphere, n), &
-         tolerance, name//": z is the integral of z'")
-      call check_relative(sum(weight), state(col_time, n), tolerance, &
-         name//": the weights make up the contact time")
+      call check_relative(sum(share), state(col_impulse, n), tolerance, &
+         name//": the shares make up the impulse")
+      call check_relative(2.0_wp*sum(share*state(col_sphere_velocity, :)), problem%mass &
+         *(problem%velocity**2 - state(col_sphere_velocity, n)**2), tolerance, &
+         name//": the work of the force is the change of the sphere's energy")
+      call check_relative(sum(share*state(col_time, :)), state(col_time, n)*state(col_impulse, n) &
+         - problem%mass*(problem%velocity*state(col_time, n) - state(col_sphere, n)), tolerance, &
+         name//": z is the integral of z'")
       call check(outcome%max_indentation >= maxval(state(col_indentation, :)) &
          *(1.0_wp - rounding), name//": no node is deeper than the largest indentation")
       call check(outcome%max_force >= maxval(state(col_force, :))*(1.0_wp - rounding), &

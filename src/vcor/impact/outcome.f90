@@ -4,7 +4,7 @@ module vcor_impact_outcome
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_constants, only : pi
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
+   use vcor_impact_trajectory, only : col_impulse, col_indentation, &
       col_plate_velocity, col_sphere, col_time, col_velocity, contact_resting, contact_separated, &
       contact_unknown, trajectory_t
    use vcor_kinds, only : wp
@@ -141,9 +141,9 @@ contains
       outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
       outcome%cor_sphere = impulse/(impact%mass*impact%velocity) - 1.0_wp
       outcome%resilience = outcome%cor_sphere**2
-      outcome%hysteresis_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
+      outcome%hysteresis_energy = sum(trajectory%share(0:n) &
          *trajectory%state(col_velocity, 0:n))
-      outcome%wave_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
+      outcome%wave_energy = sum(trajectory%share(0:n) &
          *trajectory%state(col_plate_velocity, 0:n))
       outcome%final_energy = outcome%initial_energy*outcome%resilience
       outcome%weight_work = impact%mass*impact%gravity*trajectory%state(col_sphere, n)

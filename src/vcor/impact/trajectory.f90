@@ -63,8 +63,9 @@ module vcor_impact_trajectory
       integer :: final = 0
       !> State at the nodes, shape (columns, 0:), used up to `final`
       real(wp), allocatable :: state(:, :)
-      !> Quadrature weights of the nodes for the time of contact [s], shape (0:)
-      real(wp), allocatable :: weight(:)
+      !> Shares of the nodes in the impulse of the contact: int F x dt = sum(share*x) [N s], shape
+      !> (0:)
+      real(wp), allocatable :: share(:)
       !> Largest indentation [m]
       real(wp) :: max_indentation = 0.0_wp
       !> Time of the largest indentation [s]
@@ -111,19 +112,19 @@ contains
       !> Number of nodes wanted
       integer, intent(in) :: nodes
 
-      real(wp), allocatable :: state(:, :), weight(:)
+      real(wp), allocatable :: state(:, :), share(:)
       integer :: room
 
-      if (allocated(self%weight)) then
-         if (ubound(self%weight, 1) >= nodes) return
-         room = max(nodes, 2*ubound(self%weight, 1))
-         allocate (state(columns, 0:room), weight(0:room))
+      if (allocated(self%share)) then
+         if (ubound(self%share, 1) >= nodes) return
+         room = max(nodes, 2*ubound(self%share, 1))
+         allocate (state(columns, 0:room), share(0:room))
          state(:, 0:self%final) = self%state(:, 0:self%final)
-         weight(0:self%final) = self%weight(0:self%final)
+         share(0:self%final) = self%share(0:self%final)
          call move_alloc(state, self%state)
-         call move_alloc(weight, self%weight)
+         call move_alloc(share, self%share)
       else
-         allocate (self%state(columns, 0:nodes), self%weight(0:nodes))
+         allocate (self%state(columns, 0:nodes), self%share(0:nodes))
       end if
    end subroutine reserve
 

@@ -6,7 +6,7 @@ module vcor_solver_equal_steps
    implicit none
    private
 
-   public :: parabola, add_last_step, find_peaks
+   public :: parabola, find_peaks
 
 contains
 
@@ -20,20 +20,6 @@ contains
 
       y = value(0) + 0.5_wp*x*(value(1) - value(-1) + x*(value(1) - 2.0_wp*value(0) + value(-1)))
    end function parabola
-
-   !> Add the weights of the last step, from the parabola through the last three nodes
-   pure subroutine add_last_step(dt, last, weight)
-      !> Time step [s]
-      real(wp), intent(in) :: dt
-      !> Length of the last step [s]
-      real(wp), intent(in) :: last
-      !> Weights of the last three nodes [s]
-      real(wp), intent(inout) :: weight(3)
-
-      weight(1) = weight(1) - last**3/(6.0_wp*dt*(dt + last))
-      weight(2) = weight(2) + last*(last + 3.0_wp*dt)/(6.0_wp*dt)
-      weight(3) = weight(3) + last*(2.0_wp*last + 3.0_wp*dt)/(6.0_wp*(dt + last))
-   end subroutine add_last_step
 
    !> Largest indentation and force, by the parabola through the largest node and its neighbours
    pure subroutine find_peaks(trajectory)

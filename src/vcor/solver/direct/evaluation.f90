@@ -1,18 +1,16 @@
 !> Evaluation of a run of product integration: the state at the end of contact, found by
-!> interpolation in the last step, and quadrature weights for integrals over the contact
+!> interpolation in the last step, and the shares of the nodes in the impulse
 module vcor_solver_direct_evaluation
-   use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver_equal_steps, only : add_last_step, parabola
-   use vcor_tuning, only : next_to_integer
+   use vcor_solver_equal_steps, only : parabola
    implicit none
    private
 
-   public :: end_of_contact, end_of_receding_contact, set_weights, start_weights
+   public :: end_of_contact, end_of_receding_contact, set_shares
 
 contains
 
@@ -174,79 +172,53 @@ contains
          + (b(col_time) - a(col_time))*x*(1.0_wp - x)*(a(slope)*(1.0_wp - x) - b(slope)*x)
    end function hermite
 
-   !> Weights for integrals over the contact: the trapezoidal rule on the equal steps, corrected at
-   !> both ends by the first difference (Gregory), with a dashpot by `start_weights` at the start;
-   !> on the shorter last step, the parabola through the last three nodes
-   pure subroutine set_weights(impact, dt, trajectory)
+   !> Shares of the nodes in the impulse I. If x is linear over each step they follow from the
+   !> changes dI, also of a force that starts as a root. What the bend of x and the change of F
+   !> within the steps add is, with dt dF taken from dI where there are neighbours,
+   !>
+   !>     int F x dt - sum dI (x_{j-1} + x_j)/2 = dt/6 sum dF dx - dt^2/12 [F x'] + O(dt^4)
+   !>
+   !> For x = z' this is the change of the sphere's energy. On a layer U' at the nodes, with its
+   !> term C(oo) F', is of second order only; where there are neighbours it is taken from U instead
+   pure subroutine set_shares(impact, dt, trajectory)
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       type(trajectory_t), intent(inout) :: trajectory
 
-      real(wp), parameter :: difference = 1.0_wp/12.0_wp
-      integer :: n
+      real(wp) :: rise(0:trajectory%last), last, part
+      integer :: n, j
 
       n = trajectory%last
-      associate (w => trajectory%weight)
-         w(0:n) = 0.5_wp*dt
-         if (n < 2) return
-         ! trapezoidal rule up to node n - 1
-         w(1:n - 2) = dt
-         w(n) = 0.0_wp
-         if (n >= 6) then
-            if (impact%kernel_viscosity() > 0.0_wp) then
-               w(0:3) = w(0:3) + dt*start_weights(impact%law)
+      associate (share => trajectory%share, state => trajectory%state)
+         rise(0) = dt*state(col_force, 0)
+         rise(1:) = state(col_impulse, 1:n) - state(col_impulse, 0:n - 1)
+         share(0:n) = 0.0_wp
+         do j = 1, n
+            share(j - 1:j) = share(j - 1:j) + 0.5_wp*rise(j)
+         end do
+         if (n < 6) return
+         last = state(col_time, n) - state(col_time, n - 1)
+         do j = 1, n
+            if (j < n - 1) then
+               part = (rise(j + 1) - rise(j - 1))/12.0_wp
             else
-               w(0:1) = w(0:1) + dt*difference*[-1.0_wp, 1.0_wp]
+               part = merge(dt/6.0_wp, last/12.0_wp, j < n) &
+                  *(state(col_force, j) - state(col_force, j - 1))
             end if
-            w(n - 2:n - 1) = w(n - 2:n - 1) + dt*difference*[1.0_wp, -1.0_wp]
-         end if
-         call add_last_step(dt, trajectory%state(col_time, n) - trajectory%state(col_time, n - 1), &
-            w(n - 2:n))
+            share(j - 1:j) = share(j - 1:j) + part*[-1.0_wp, 1.0_wp]
+         end do
+         share(0:1) = share(0:1) + rise(0)/12.0_wp*[-1.0_wp, 1.0_wp]
+         share(n - 2:n - 1) = share(n - 2:n - 1) &
+            + dt/12.0_wp*state(col_force, n - 1)*[1.0_wp, -1.0_wp]
+         if (.not. impact%plate%layered()) return
+         do j = 2, n - 3
+            state(col_plate_velocity, j) = (8.0_wp*(state(col_plate, j + 1) &
+               - state(col_plate, j - 1)) - (state(col_plate, j + 2) - state(col_plate, j - 2))) &
+               /(12.0_wp*dt)
+            state(col_velocity, j) = state(col_sphere_velocity, j) - state(col_plate_velocity, j)
+         end do
       end associate
-   end subroutine set_weights
-
-   !> Corrections to the trapezoidal rule with unit steps for integrands that start as a sum of
-   !> 1, t^(n-1), t and t^n, as the force of a dashpot does: for t^p the rule is too large by
-   !> zeta(-p). If n is close to an integer these are smooth and Gregory's correction is enough
-   pure function start_weights(law) result(weight)
-      type(contact_law_t), intent(in) :: law
-      !> Corrections to the weights of nodes 0 .. 3
-      real(wp) :: weight(4)
-
-      real(wp) :: p, a, b, c, d(2)
-
-      p = law%exponent - 1.0_wp
-      weight = [-1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]/12.0_wp
-      if (abs(p - anint(p)) < next_to_integer) return
-      ! for the corrections w_j, with v_j = w_j j^p:
-      ! sum v_j = a, sum v_j j^(1-p) = a + b, sum v_j j = a + c
-      a = -zeta(-p)
-      b = 1.0_wp/12.0_wp - a
-      c = -zeta(-law%exponent) - a
-      d = [2.0_wp, 3.0_wp]**(1.0_wp - p) - 1.0_wp
-      weight(4) = (b - d(1)*c)/(d(2) - 2.0_wp*d(1))
-      weight(3) = c - 2.0_wp*weight(4)
-      weight(2) = a - weight(3) - weight(4)
-      weight(3:4) = weight(3:4)/[2.0_wp, 3.0_wp]**p
-      weight(1) = -sum(weight(2:4))
-   end function start_weights
-
-   !> Riemann's zeta function for -2 < s < 0 by the Euler-Maclaurin formula
-   pure function zeta(s)
-      !> Argument
-      real(wp), intent(in) :: s
-      real(wp) :: zeta
-
-      integer, parameter :: terms = 20
-      integer :: k
-
-      associate (n => real(terms, wp))
-         zeta = sum([(real(k, wp)**(-s), k=1, terms - 1)]) + n**(-s)*(0.5_wp + n/(s - 1.0_wp) &
-            + s/(12.0_wp*n)*(1.0_wp - (s + 1.0_wp)*(s + 2.0_wp)/(60.0_wp*n**2) &
-            *(1.0_wp - (s + 3.0_wp)*(s + 4.0_wp)/(42.0_wp*n**2) &
-            *(1.0_wp - (s + 5.0_wp)*(s + 6.0_wp)/(40.0_wp*n**2)))))
-      end associate
-   end function zeta
+   end subroutine set_shares
 
 end module vcor_solver_direct_evaluation

@@ -23,7 +23,7 @@ module vcor_solver_direct_product
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_convolution, only : lengthen, second_term_t
-   use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, set_weights
+   use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, set_shares
    use vcor_solver_direct_motion, only : motion_t
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
@@ -313,7 +313,7 @@ contains
             exit
          end if
       end do
-      call set_weights(impact, dt, trajectory)
+      call set_shares(impact, dt, trajectory)
       call find_peaks(trajectory)
    end subroutine march
 

@@ -44,7 +44,7 @@ contains
       trajectory%state(col_force, 0) = impact%first_force()
       trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
       trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
-      trajectory%weight(0) = 0.0_wp
+      trajectory%share(0) = 0.0_wp
       trajectory%stages = rule%stages
       allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))
       allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
@@ -65,8 +65,8 @@ contains
       first = trajectory%final + 1
       trajectory%final = trajectory%final + n
       trajectory%steps = trajectory%steps + 1
-      trajectory%weight(first:trajectory%final) = rule%weight(1:n) &
-         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
+      trajectory%share(first:trajectory%final) = rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))*panel%force(1:n)
       do j = 1, n
          associate (state => trajectory%state(:, first + j - 1))
             state(col_time) = panel%time(j)

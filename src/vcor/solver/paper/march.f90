@@ -21,7 +21,7 @@ module vcor_solver_paper_march
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_convolution, only : convolution_t, lengthen, second_term_t
-   use vcor_solver_equal_steps, only : add_last_step, find_peaks
+   use vcor_solver_equal_steps, only : find_peaks
    use vcor_solver_paper_formulas, only : ab_points, adams_bashforth, damping_limit, &
       first_difference, first_points, kernel_terms, runge_kutta, second_difference, second_points, &
       start_steps
@@ -221,7 +221,7 @@ contains
       ! step (7): the outcome
       if (crossing > 0) call insert_separation(impact, crossing, trajectory)
       if (.not. ghost) trajectory%final = trajectory%last
-      call set_simpson_weights(dt, trajectory)
+      call set_shares(dt, trajectory)
       call find_peaks(trajectory)
    end subroutine march
 
@@ -437,10 +437,10 @@ contains
       end do
    end function lagrange
 
-   !> Weights of integrals over the contact: Simpson's rule on the equal steps, the 3/8 rule on
-   !> three of them if their number is odd, and on the shorter last step the parabola through the
-   !> last three nodes
-   pure subroutine set_simpson_weights(dt, trajectory)
+   !> Shares of the nodes in the impulse: the force times the weights of Simpson's rule on the equal
+   !> steps, of the 3/8 rule on three of them if their number is odd, and on the shorter last step
+   !> of the parabola through the last three nodes
+   pure subroutine set_shares(dt, trajectory)
       !> Time step [s]
       real(wp), intent(in) :: dt
       type(trajectory_t), intent(inout) :: trajectory
@@ -449,7 +449,7 @@ contains
       integer :: n, even
 
       n = trajectory%last
-      associate (w => trajectory%weight)
+      associate (w => trajectory%share)
          w(0:n) = 0.0_wp
          if (n < 1) return
          h = trajectory%state(col_time, n) - trajectory%state(col_time, n - 1)
@@ -459,6 +459,7 @@ contains
             if (n == 1) w(0) = 0.0_wp
             if (n == 2) w(1) = 0.5_wp*dt
             w(n - 1:n) = w(n - 1:n) + 0.5_wp*h
+            w(0:n) = w(0:n)*trajectory%state(col_force, 0:n)
             return
          end if
 
@@ -474,7 +475,22 @@ contains
          if (even < n - 1) &
             w(even:n - 1) = w(even:n - 1) + dt*[3.0_wp, 9.0_wp, 9.0_wp, 3.0_wp]/8.0_wp
          call add_last_step(dt, h, w(n - 2:n))
+         w(0:n) = w(0:n)*trajectory%state(col_force, 0:n)
       end associate
-   end subroutine set_simpson_weights
+   end subroutine set_shares
+
+   !> Add the weights of the last step, from the parabola through the last three nodes
+   pure subroutine add_last_step(dt, last, weight)
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Length of the last step [s]
+      real(wp), intent(in) :: last
+      !> Weights of the last three nodes [s]
+      real(wp), intent(inout) :: weight(3)
+
+      weight(1) = weight(1) - last**3/(6.0_wp*dt*(dt + last))
+      weight(2) = weight(2) + last*(last + 3.0_wp*dt)/(6.0_wp*dt)
+      weight(3) = weight(3) + last*(2.0_wp*last + 3.0_wp*dt)/(6.0_wp*(dt + last))
+   end subroutine add_last_step
 
 end module vcor_solver_paper_march
