@@ -88,6 +88,19 @@ def test_just_comes_off(vcor):
         assert others == pytest.approx(values, abs=10.0**-digits)
 
 
+def test_comes_off_between_two_steps(vcor):
+    """The force vanishes for less than a step of direct, which took the contact for one that lasts."""
+    vcor.write(
+        "&impact velocity = 0.0640574, gravity = 9.81 /\n&sphere radius = 0.01, material = 'ball' /\n"
+        "&plate material = 'plate', waves = 'none' /\n&material name = 'ball', model = 'rigid', density = 7800 /\n"
+        "&material name = 'plate', model = 'sls', poisson_ratio = 0.48, glassy_modulus = 15e6, alpha = 300.0, "
+        "beta = 1200.0 /\n"
+    )
+    found = [run(vcor, "cor_sphere", "--set", f"solver.method={method}") for method in METHODS]
+    assert [status for _, status in found] == ["separated", "separated"]
+    assert found[1][0] == pytest.approx(found[0][0], abs=2e-6)
+
+
 def test_end_time(vcor):
     """At the end of the computation it rests or it does not, as its energy says."""
     vcor.write(CASE.replace("velocity = 0.4", "velocity = 1e-3"))

@@ -17,7 +17,7 @@ contains
    !> State where F = 0 in the step that ends at node n, the first node with F <= 0. In
    !> F = stiffness u - M the indentation is a Hermite cubic and the memory M a parabola: both are
    !> smooth even if s goes to zero together with F
-   pure function end_of_contact(impact, stiffness, recoil, trajectory, n) result(node)
+   pure function end_of_contact(impact, stiffness, recoil, trajectory, n, latest) result(node)
       type(impact_t), intent(in) :: impact
       !> Approximate dF/du [N/m^1.5]
       real(wp), intent(in) :: stiffness
@@ -26,6 +26,8 @@ contains
       type(trajectory_t), intent(in) :: trajectory
       !> First node with F <= 0
       integer, intent(in) :: n
+      !> Position in the step where F <= 0, 0 .. 1
+      real(wp), intent(in) :: latest
       !> State at the end of contact
       real(wp) :: node(columns)
 
@@ -42,10 +44,12 @@ contains
       end do
 
       lower = 0.0_wp
-      upper = 1.0_wp
+      upper = latest
       f_lower = a(col_force)
       f_upper = b(col_force)
-      theta = 1.0_wp
+      if (upper < 1.0_wp) f_upper = stiffness*impact%law%u(hermite(a, b, col_indentation, &
+         col_velocity, upper)) - parabola(memory, upper)
+      theta = upper
       do iteration = 1, 200
          if (.not. f_upper < 0.0_wp .or. .not. f_lower > 0.0_wp) exit
          theta = (lower*f_upper - upper*f_lower)/(f_upper - f_lower)

@@ -27,7 +27,7 @@ module vcor_solver_direct_product
    use vcor_solver_direct_motion, only : motion_t
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
-   use vcor_solver_equal_steps, only : find_peaks
+   use vcor_solver_equal_steps, only : find_peaks, parabola
    use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
    use vcor_tuning, only : cancelled, enough_steps, first_steps, &
       last_part, layer_reach, least_part, most_for_all, most_for_layers, most_work, share_of_force
@@ -219,7 +219,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(run_t) :: run
-      real(wp) :: end_time, node(columns), alpha
+      real(wp) :: end_time, node(columns), alpha, theta
       integer :: n, room, turn, most
       logical :: ends, stopped
 
@@ -290,6 +290,9 @@ contains
          trajectory%steps = n
          ! while the indentation grows the force is positive; a negative one is a rounding error
          ends = node(col_force) <= 0.0_wp .and. run%speed < 0.0_wp
+         theta = 1.0_wp
+         if (.not. ends .and. impact%gravity > 0.0_wp .and. n > 2) &
+            call find_dip(trajectory%state(col_force, n - 2:n), theta, ends)
          if (run%receding%shrinks) then
             ends = run%receding%t1(3) <= 0.0_wp
             crude = crude .or. ends .and. run%receding%t1(2) > last_part*real(turn, wp)
@@ -297,7 +300,7 @@ contains
                run%motion%recoil, trajectory, n)
          else if (ends) then
             trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, &
-               run%motion%recoil, trajectory, n)
+               run%motion%recoil, trajectory, n, theta)
          end if
          call trajectory%stop_at_rest(impact, n == most &
             .or. node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp), stopped)
@@ -316,6 +319,25 @@ contains
       call set_shares(impact, dt, trajectory)
       call find_peaks(trajectory)
    end subroutine march
+
+   !> Find out whether a force vanishes for a moment in the newest step, by a parabola, as that of a
+   !> sphere may that leaves a contact under its weight only just
+   pure subroutine find_dip(force, theta, dips)
+      !> Force at the last three nodes [N], > 0
+      real(wp), intent(in) :: force(-1:1)
+      !> Position of the least force in the step, 0 .. 1; unchanged if it does not vanish
+      real(wp), intent(inout) :: theta
+      logical, intent(out) :: dips
+
+      real(wp) :: bend, x
+
+      dips = .false.
+      bend = force(1) - 2.0_wp*force(0) + force(-1)
+      if (.not. bend > 0.0_wp) return
+      x = 0.5_wp*(force(-1) - force(1))/bend
+      dips = x > 0.0_wp .and. x < 1.0_wp .and. parabola(force, x) < 0.0_wp
+      if (dips) theta = x
+   end subroutine find_dip
 
    !> Raise the error that a contact lasts too long
    subroutine give_up(regrows, error)
