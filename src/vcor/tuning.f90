@@ -119,6 +119,12 @@ module vcor_tuning
    !> other rates; largest where the force ends as s^1.5
    real(wp), parameter :: error_of_layer = 1.0e3_wp ! tested
 
+   !> Least errors of the coefficients of restitution of the sphere and of the contact for a flat
+   !> punch, over the velocity of the face by its waves: its force begins with a kink, whose echoes
+   !> the sum blurs. Measured against method direct on 14 punches
+   real(wp), parameter :: error_of_blunt = 3.0e-6_wp ! tested
+   real(wp), parameter :: end_of_blunt = 1.0e-2_wp ! tested
+
    ! Newton's method
 
    !> Maximum iterations

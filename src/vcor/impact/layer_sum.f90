@@ -50,6 +50,8 @@ module vcor_impact_layer_sum
       integer :: band = 0
       !> Power n of time as which the force starts, from 1 to 3/2
       real(wp) :: start = 0.0_wp
+      !> One rate of each pair, over the inverse of the window
+      complex(wp), allocatable :: pair_rate(:)
       !> Coefficients c_k at the radii: real terms, then real and imaginary parts of the pairs,
       !> times the radius [m2/(N s)], shape (terms, radii)
       real(wp), allocatable :: coefficient(:, :)
@@ -67,38 +69,36 @@ module vcor_impact_layer_sum
    end type layer_sum_t
 
    !> Pairs of rates: equidistant ones with the same `damping`, for a period of 2.4 windows, then a
-   !> geometric series in which the damping is the distance of neighbours
-   integer, parameter :: equidistant = 40, series = 11
+   !> geometric series in which the damping is the distance of neighbours. The force of bodies
+   !> blunter than a sphere has more of high frequencies, and takes twice as many
+   integer, parameter :: equidistant = 40, equidistant_of_blunt = 80, series = 11
    real(wp), parameter :: step = pi/1.2_wp, damping = 3.0_wp, ratio = 1.25_wp
    !> Real rates; the first, 0, is that of a thin plate, which stays where an impulse has moved it
    integer, parameter :: slow = 17
    real(wp), parameter :: slowest = 0.3_wp, fastest = 3000.0_wp
    integer :: i_rate
-   !> Imaginary part of the last equidistant rate
-   real(wp), parameter :: first = step*real(equidistant, wp)
-   !> Real rates, and one of each pair, over the inverse of the window
+   !> Real rates, over the inverse of the window
    real(wp), parameter :: rate(slow) = [0.0_wp, (slowest*(fastest/slowest)**(real(i_rate, wp) &
       /real(slow - 2, wp)), i_rate=0, slow - 2)]
-   complex(wp), parameter :: pair_rate(equidistant + series) = [ &
-      (cmplx(damping, -step*real(i_rate, wp), wp), i_rate=1, equidistant), &
-      (first*ratio**i_rate*cmplx(1.0_wp - 1.0_wp/ratio, -1.0_wp, wp), i_rate=1, series)]
-   !> Number of coefficients
-   integer, parameter :: terms_of_fit = slow + 2*(equidistant + series)
 
    !> Points s times the window: with real part `line` and spacing `dense`, then a geometric series
    !> that departs from this line with the given slope
    real(wp), parameter :: line = 2.0_wp, dense = 0.6_wp, last = 3000.0_wp, slope = 0.1_wp
-   integer, parameter :: near = floor(first/dense) + 1, sparse = 60, points = near + sparse
-   real(wp), parameter :: omega(points) = [(dense*real(i_rate, wp), i_rate=0, near - 1), &
-      (first*(last/first)**(real(i_rate, wp)/real(sparse, wp)), i_rate=1, sparse)]
-   complex(wp), parameter :: point(points) = [(cmplx(line + slope*max(omega(i_rate) - first, &
-      0.0_wp), omega(i_rate), wp), i_rate=1, points)]
-   !> Points on the line beyond the equidistant rates, in pairs one `step` apart: an echo delayed by
-   !> about the window makes them differ, a shorter memory does not
+   integer, parameter :: sparse = 60
+   !> Number of points beyond the equidistant rates that tell echoes
    integer, parameter :: beyond = 10
-   complex(wp), parameter :: echo(2*beyond) = [ &
-      (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp), wp), i_rate=1, beyond), &
-      (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp) + step, wp), i_rate=1, beyond)]
+
+   !> Rates and points of a fit
+   type :: grid_t
+      !> One rate of each pair, over the inverse of the window
+      complex(wp), allocatable :: pair_rate(:)
+      !> Points of the fit; the first `near` are those up to the last equidistant rate
+      complex(wp), allocatable :: point(:)
+      integer :: near = 0
+      !> Points on the line beyond the equidistant rates, in pairs one `step` apart: an echo delayed
+      !> by about the window makes them differ, a shorter memory does not
+      complex(wp) :: echo(2*beyond) = 0.0_wp
+   end type grid_t
 
    !> A point beyond all rates. The misfit there is that of a dent that comes faster than the sum:
    !> of a disc that waves cross in no time, or of a power law. Its weight for the velocity at an
@@ -114,6 +114,29 @@ module vcor_impact_layer_sum
    real(wp), parameter :: bend = 3.0_wp, sphere = 1.5_wp, power_of_fit = 2.0_wp
 
 contains
+
+   !> Rates and points for a force that starts as a power of time
+   pure function grid_for(start) result(grid)
+      !> The power, from 1 to 3/2
+      real(wp), intent(in) :: start
+      type(grid_t) :: grid
+
+      real(wp), allocatable :: omega(:)
+      !> Imaginary part of the last equidistant rate
+      real(wp) :: first
+      integer :: i, n
+
+      n = merge(equidistant_of_blunt, equidistant, start < sphere)
+      first = step*real(n, wp)
+      allocate (grid%pair_rate, source=[(cmplx(damping, -step*real(i, wp), wp), i=1, n), &
+         (first*ratio**i*cmplx(1.0_wp - 1.0_wp/ratio, -1.0_wp, wp), i=1, series)])
+      grid%near = floor(first/dense) + 1
+      omega = [(dense*real(i, wp), i=0, grid%near - 1), &
+         (first*(last/first)**(real(i, wp)/real(sparse, wp)), i=1, sparse)]
+      allocate (grid%point, source=cmplx(line + slope*max(omega - first, 0.0_wp), omega, wp))
+      grid%echo = [(cmplx(line, first*ratio**(real(i, wp) - 0.5_wp), wp), i=1, beyond), &
+         (cmplx(line, first*ratio**(real(i, wp) - 0.5_wp) + step, wp), i=1, beyond)]
+   end function grid_for
 
    !> Index of the band that contains a footprint
    pure function band_of(footprint) result(band)
@@ -152,39 +175,43 @@ contains
       real(wp), intent(in) :: exponent
 
       integer, parameter :: middle = (radii + 1)/2
-      complex(wp) :: c(points, radii), column(points)
-      complex(wp) :: all(points + 2*beyond + 1), left(points + 2*beyond + 1, radii)
-      real(wp) :: radius(radii), passive(points), size_of_force(points + beyond)
-      real(wp), allocatable :: matrix(:, :)
-      integer :: i, j
+      type(grid_t) :: grid
+      complex(wp), allocatable :: c(:, :), column(:), all(:), left(:, :)
+      real(wp), allocatable :: matrix(:, :), passive(:), size_of_force(:)
+      real(wp) :: radius(radii)
+      integer :: i, j, points, terms
 
       self%window = window
       self%band = band_of(footprint)
       self%start = min(exponent, sphere)
       radius = ladder**(real(self%band, wp) + 0.5_wp*(1.0_wp + node()))
-      all = [point, echo, far]/window
+      grid = grid_for(self%start)
+      self%pair_rate = grid%pair_rate
+      points = size(grid%point)
+      terms = slow + 2*size(self%pair_rate)
+      all = [grid%point, grid%echo, far]/window
+      allocate (c(points, radii), passive(points), left(size(all), radii), matrix(2*points, terms))
       do i = 1, points
          c(i, :) = radius*layer%compliance(all(i), radius, accuracy(i)) - at_once()
          passive(i) = abs(c(i, middle)) + abs(radius(middle)*layer%dent(all(i), radius(middle))) &
-            *(1.0_wp + (bend/abs(point(i)))**2)
+            *(1.0_wp + (bend/abs(grid%point(i)))**2)
       end do
-      allocate (matrix(2*points, terms_of_fit))
-      do j = 1, terms_of_fit
-         column = response(j, point)
+      do j = 1, terms
+         column = response(j, pair_of(j), grid%point)
          matrix(:, j) = [real(column, wp), aimag(column)]
       end do
       call least_squares(matrix, 1.0_wp/(passive &
-         *(1.0_wp + (abs(point)/bend)**power_of_fit)), c, self%coefficient)
+         *(1.0_wp + (abs(grid%point)/bend)**power_of_fit)), c, self%coefficient)
       if (.not. allocated(self%coefficient)) return
-      size_of_force = abs([point, echo(:beyond)])/(bend*(1.0_wp + sphere - self%start))
+      size_of_force = abs([grid%point, grid%echo(:beyond)])/(bend*(1.0_wp + sphere - self%start))
       do i = 1, size(all)
          if (i <= points) then
             left(i, :) = -c(i, :)
          else
             left(i, :) = at_once() - radius*layer%compliance(all(i), radius, accuracy(i))
          end if
-         do j = 1, terms_of_fit
-            left(i, :) = left(i, :) + response(j, all(i)*window)*self%coefficient(j, :)
+         do j = 1, terms
+            left(i, :) = left(i, :) + response(j, pair_of(j), all(i)*window)*self%coefficient(j, :)
          end do
       end do
       do j = 1, radii
@@ -198,12 +225,21 @@ contains
                maxval(all_left/(1.0_wp + size_of_force**self%start)))
             self%echo(j) = maxval(echoes/(1.0_wp + size_beyond**(self%start + 1.0_wp)))
             self%echo_of_rate(j) = max(maxval(echoes/(1.0_wp + size_beyond**self%start)), &
-               maxval(all_left(:near)/(1.0_wp + size_of_force(:near)**self%start)))
+               maxval(all_left(:grid%near) &
+               /(1.0_wp + size_of_force(:grid%near)**self%start)))
          end associate
       end do
       self%coefficient = self%coefficient/window
 
    contains
+
+      !> Rate of the pair that a coefficient belongs to; any for a real term
+      pure function pair_of(term) result(l)
+         integer, intent(in) :: term
+         complex(wp) :: l
+
+         l = self%pair_rate(max(1, (term - slow + 1)/2))
+      end function pair_of
 
       !> Deflection that follows the force at once, times the radius [m2/N]; the same for all radii
       pure function at_once()
@@ -231,9 +267,11 @@ contains
    end function node
 
    !> Contribution of a coefficient to C at a point times the window
-   elemental function response(term, s) result(c)
+   elemental function response(term, l, s) result(c)
       !> Number of the coefficient
       integer, intent(in) :: term
+      !> Rate of its pair, if it has one
+      complex(wp), intent(in) :: l
       !> The point
       complex(wp), intent(in) :: s
       !> C for a coefficient of 1
@@ -243,13 +281,11 @@ contains
          c = 1.0_wp/(s + rate(term))
          return
       end if
-      associate (l => pair_rate((term - slow + 1)/2))
-         if (mod(term - slow, 2) == 1) then
-            c = 0.5_wp/(s + l) + 0.5_wp/(s + conjg(l))
-         else
-            c = (0.0_wp, 0.5_wp)*(1.0_wp/(s + l) - 1.0_wp/(s + conjg(l)))
-         end if
-      end associate
+      if (mod(term - slow, 2) == 1) then
+         c = 0.5_wp/(s + l) + 0.5_wp/(s + conjg(l))
+      else
+         c = (0.0_wp, 0.5_wp)*(1.0_wp/(s + l) - 1.0_wp/(s + conjg(l)))
+      end if
    end function response
 
    !> Sum for a footprint
@@ -261,7 +297,7 @@ contains
       type(exponential_sum_t), intent(out) :: terms
       type(layer_misfit_t), intent(out) :: misfit
 
-      real(wp) :: weight(radii), distance(radii), c(terms_of_fit)
+      real(wp) :: weight(radii), distance(radii), c(size(self%coefficient, 1))
       integer :: i
 
       ! barycentric interpolation in the logarithm of the radius
@@ -277,7 +313,7 @@ contains
       misfit = layer_misfit_t(self%misfit(i)/footprint, self%echo(i)/footprint, &
          self%echo_of_rate(i)/footprint, self%misfit_of_rate(i)/footprint)
       terms%rates = rate/self%window
-      terms%pair_rates = pair_rate/self%window
+      terms%pair_rates = self%pair_rate/self%window
       terms%moduli = c(:slow)
       terms%pair_moduli = cmplx(c(slow + 1::2), c(slow + 2::2), wp)
       terms%viscosity = sum(terms%moduli) + sum(real(terms%pair_moduli, wp))

@@ -10,17 +10,17 @@ module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_layer_sum, only : layer_misfit_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_impulse, col_indentation, col_time, contact_separated, &
-      trajectory_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
+      col_plate, col_plate_velocity, col_time, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : error_of_echo, error_of_kernel, error_of_layer, kernel_share, &
-      layer_growth, layer_reach, layer_start, loosest_accuracy, plate_share, shallow_end, &
-      window_growth, window_margin
+   use vcor_tuning, only : end_of_blunt, error_of_blunt, error_of_echo, error_of_kernel, &
+      error_of_layer, kernel_share, layer_growth, layer_reach, layer_start, loosest_accuracy, &
+      plate_share, shallow_end, window_growth, window_margin
    implicit none
    private
 
@@ -64,7 +64,7 @@ contains
       type(modes_t) :: modes
       type(layer_misfit_t) :: misfit
       real(wp) :: end_time, ghost_end, window, first_window, growth, time_scale, error_of_sums
-      real(wp) :: stiffness
+      real(wp) :: stiffness, blunt
       logical :: complete
 
       time_scale = impact%time_scale()
@@ -126,6 +126,11 @@ contains
                + (error_of_kernel*misfit%motion + error_of_echo*misfit%echo)*stiffness
             trajectory%cor_error = trajectory%cor_error + error_of_layer*stiffness &
                *merge(misfit%power_end, misfit%smooth_end, ends_as_power(impact, trajectory))
+            ! 1 for a flat punch, 0 for a sphere and sharper bodies
+            blunt = max(3.0_wp - 2.0_wp*impact%law%exponent, 0.0_wp)*speed_of_face(trajectory) &
+               /impact%velocity
+            error_of_sums = max(error_of_sums, error_of_blunt*blunt)
+            trajectory%cor_error = max(trajectory%cor_error, end_of_blunt*blunt)
          else
             error_of_sums = error_of_sums + error_of_kernel*modes%plate%error
          end if
@@ -148,6 +153,18 @@ contains
       ends_as_power = impact%law%receding .or. trajectory%state(col_indentation, trajectory%last) &
          < shallow_end*trajectory%max_indentation
    end function ends_as_power
+
+   !> Velocity of the face by its waves, without a dent: at the largest force, and on average, since
+   !> at the end there is no force [m/s]
+   pure function speed_of_face(trajectory) result(speed)
+      type(trajectory_t), intent(in) :: trajectory
+      real(wp) :: speed
+
+      associate (last => trajectory%last, state => trajectory%state)
+         speed = max(abs(state(col_plate_velocity, maxloc(state(col_force, 0:last), dim=1) - 1)), &
+            abs(state(col_plate, last))/state(col_time, last))
+      end associate
+   end function speed_of_face
 
    !> Error of the kernel as an impact feels it: that of the sum, or that of the kernel's integral
    !> up to the largest force, times the share of the momentum taken by then, if larger. This is the
