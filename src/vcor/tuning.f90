@@ -236,6 +236,8 @@ module vcor_tuning
    !> What panels add to the difference may cancel. The largest addition counts, but only up to this
    !> share of the accuracy, below which an overestimate misleads nobody
    real(wp), parameter :: harmless = 0.1_wp ! tested
+   !> Rounding in the indentation of a sphere in contact under its weight, over its fall without it
+   real(wp), parameter :: rounding_of_fall = 7.0e-15_wp ! tested
    !> Rounding per panel, mostly from the eigenvectors of the integration matrices
    real(wp), parameter :: rounding_per_panel = 5.0e-13_wp ! tested
 

@@ -47,6 +47,26 @@ def test_rests(vcor, method, velocity):
     assert math.isnan(values[1]) and math.isnan(values[2])
 
 
+@pytest.mark.parametrize("waves", ["none", "hereditary"])
+@pytest.mark.parametrize("velocity", [1e-9, 1e-7, 1e-6, 1e-5, 1e-4])
+def test_put_down_on_a_dashpot(vcor, velocity, waves):
+    """Over many oscillations, ive took rounding in the force for the end of the contact."""
+    gel = "'prony', density = 1000, poisson_ratio = 0.5, equilibrium_modulus = 1e5, viscosity = 30.0"
+    vcor.write(
+        CASE.replace("'sls', poisson_ratio = 0.5, glassy_modulus = 1e5, alpha = 50.0, beta = 100.0", gel)
+        .replace("waves = 'none'", f"waves = '{waves}', half_thickness = 0.5")
+        .replace("velocity = 0.4", f"velocity = {velocity}")
+    )
+    words = ["--set", "solver.method=ive", "--set"]
+    names = "max_force,residual_indentation"
+    (force, left), status = run(vcor, names, *words, "contact.law=boltzmann")
+    assert status == "rests"
+    assert left == pytest.approx(settled(1e5), rel=1e-6)
+    # the contact is the same up to the largest indentation
+    (other, _), _ = run(vcor, names, *words, "contact.law=receding")
+    assert force == pytest.approx(other, rel=1e-7)
+
+
 def test_rest_is_no_doubt(vcor):
     """In a sweep a sphere that rests is not counted among those with a large estimated error."""
     vcor.write(CASE + "&sweep parameter = 'impact.velocity', values = 1e-6, 0.4 /\n")

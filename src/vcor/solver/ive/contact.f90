@@ -32,7 +32,7 @@ module vcor_solver_ive_contact
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
+      rounding_of_fall, rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
       tolerable, usual_accuracy, usually_better
    implicit none
    private
@@ -119,7 +119,7 @@ contains
             cycle
          end if
          call judge(contact, trajectory)
-         if (is_refused(contact)) then
+         if (is_refused(contact, trajectory%max_force)) then
             call shorten(contact)
             cycle
          end if
@@ -271,6 +271,9 @@ contains
       n = self%panel%stages
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact, &
                  collocator => self%problem%collocator)
+         ! the indentation is what is left of the fall g t^2/2: its rounding must not be resolved
+         self%accuracy = max(self%accuracy, rounding_of_fall*0.5_wp*impact%gravity &
+            *panel%time(0)**2/(self%speed*self%time_scale))
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
@@ -369,8 +372,8 @@ contains
    end function missed_drift
 
    !> Contribution of the panel to the error of the energy that the plate takes, int alpha F^2, over
-   !> the initial energy: forces inside a panel are less accurate than the motion, and squaring does
-   !> not average their errors out
+   !> the energy at the reference velocity, without gravity the initial one: forces inside a panel
+   !> are less accurate than the motion, and squaring does not average their errors out
    pure function work_error(self) result(error)
       type(contact_t), intent(in) :: self
       !> Error [-]
@@ -378,7 +381,7 @@ contains
 
       associate (collocator => self%problem%collocator, impact => self%problem%impact)
          error = abs(work(collocator%rule, self%panel) - work(collocator%coarse, self%coarse)) &
-            /impact%initial_energy()
+            /(0.5_wp*impact%mass*self%speed**2)
       end associate
 
    contains
@@ -398,14 +401,18 @@ contains
    end function work_error
 
    !> Whether the panel is refused
-   pure function is_refused(self)
+   pure function is_refused(self, max_force)
       type(contact_t), intent(in) :: self
+      !> Largest force of the panels before [N]
+      real(wp), intent(in) :: max_force
       logical :: is_refused
 
       ! an error that a shorter panel did not reduce is inherited from earlier panels
       is_refused = .not. (self%excess <= 1.0_wp &
          .or. self%excess <= tolerable .and. self%excess > 0.5_wp*self%refused)
-      if (is_refused .and. misses_its_end_only(self)) is_refused = .not. self%is_best_end()
+      ! a zero of a force that is all rounding is no end
+      if (is_refused .and. misses_its_end_only(self)) is_refused = .not. (self%is_best_end() &
+         .and. self%force_difference <= max_force)
    end function is_refused
 
    !> Whether the panel is accurate but for its end; next to a branch point only if the excess is
