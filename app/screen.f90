@@ -149,6 +149,11 @@ contains
       type(outcome_t), intent(in) :: outcome
       character(len=:), allocatable :: text
 
+      character(len=:), allocatable :: doubt
+
+      doubt = ''
+      if (visible(outcome%wave_energy, outcome%initial_energy) < 0.0_wp) &
+         doubt = '; only W_h + W_wave is a loss'
       text = line('  energy before the impact', 50, 'KE_0', outcome%initial_energy, 'J', '')
       if (abs(outcome%weight_work) > 0.0_wp) text = text//line('    gained by the weight', 50, &
          'm g z', outcome%weight_work, 'J', share(outcome%weight_work))
@@ -157,7 +162,7 @@ contains
          share(outcome%hysteresis_energy)) &
          //line('    radiated into the plate', 50, 'W_wave', &
          visible(outcome%wave_energy, outcome%initial_energy), 'J', &
-         share(outcome%wave_energy)) &
+         share(outcome%wave_energy)//doubt) &
          //line('    left to the sphere', 50, 'KE_1', outcome%final_energy, 'J', &
          share(outcome%final_energy)) &
          //line('    missing from the budget', 50, 'dW', outcome%energy_imbalance, 'J', '')
