@@ -180,7 +180,7 @@ def test_contacts_that_do_not_end(vcor, law, reason):
     assert done.code == NUMERICAL and reason in done.err
 
 
-RUBBER = """
+SOFT_CASE = """
 &impact velocity = 10.0 /
 &sphere radius = 0.01, material = 'steel' /
 &plate half_thickness = 0.02, material = 'rubber', waves = 'body' /
