@@ -112,6 +112,7 @@ contains
       type(contact_modulus_t) :: modulus
       type(error_t), allocatable :: error
       real(wp), allocatable :: state(:, :)
+      complex(wp) :: dynamic
 
       call new_elastic(prony, -1.0_wp, error)
       call refused(error, error_input, "a negative modulus")
@@ -125,6 +126,11 @@ contains
       call refused(error, error_input, "an unbuilt sphere")
       call new_contact_modulus(modulus, steel, tabulated, .false., error)
       call refused(error, error_input, "an unbuilt block")
+      dynamic = modulus%dynamic_modulus(1.0_wp)
+      call check(all(ieee_is_nan([modulus%relaxation(1.0_wp), modulus%rate(1.0_wp), &
+         modulus%integral(1.0_wp), modulus%mean_integral(1.0_wp), real(dynamic, wp), &
+         modulus%step_integrals(1.0_wp, 2), modulus%glassy(), modulus%rubbery()])), &
+         "an unbuilt contact modulus is NaN")
       call new_plate(plate, prony, 0.01_wp, waves_relaxing, error)
       call refused(error, error_input, "a plate of an unbuilt material")
       call trajectory%sample(10, state)

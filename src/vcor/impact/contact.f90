@@ -1,5 +1,6 @@
 !> Contact modulus E'(t) of two bodies, Eq. (1) of Green's paper
 module vcor_impact_contact
+   use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_beside_elastic, only : sum_beside_elastic
    use vcor_kinds, only : wp
@@ -23,7 +24,8 @@ module vcor_impact_contact
    !> E'(t) = E'_a E'_b/(E'_a + E'_b) with E'_i = E_i/(1 - nu_i^2), as in the paper a function of
    !> time. If one body is rigid, or both have the same material or are elastic, it is a multiple of
    !> one modulus, with all its closed forms (Cases 1 to 4 of the paper's Section III). Two bodies
-   !> in series are one material. All other combinations are a pair
+   !> in series are one material. All other combinations are a pair. What nothing has built has the
+   !> modulus NaN
    type :: contact_modulus_t
       private
       !> Whether the two bodies are in series
@@ -177,7 +179,8 @@ contains
       !> Modulus [Pa]
       real(wp) :: value
 
-      value = self%first_factor*self%first%relaxation(t)
+      value = unset
+      if (allocated(self%first)) value = self%first_factor*self%first%relaxation(t)
       if (allocated(self%second)) &
          value = combined(value, self%second_factor*self%second%relaxation(t))
    end function relaxation
@@ -206,12 +209,13 @@ contains
 
       real(wp) :: a, b
 
+      value = unset
       if (allocated(self%second)) then
          a = self%first_factor*self%first%relaxation(t)
          b = self%second_factor*self%second%relaxation(t)
          value = (self%first_factor*self%first%rate(t)*(b/(a + b))**2 &
             + self%second_factor*self%second%rate(t)*(a/(a + b))**2)
-      else
+      else if (allocated(self%first)) then
          value = self%first_factor*self%first%rate(t)
       end if
    end function rate
@@ -224,11 +228,12 @@ contains
       !> Integral [Pa s]
       real(wp) :: value
 
+      value = unset
       if (allocated(self%terms)) then
          value = self%terms%integral(t)
       else if (allocated(self%second)) then
          value = t*sum(self%weight*self%relaxation(t*self%node))
-      else
+      else if (allocated(self%first)) then
          value = self%first_factor*self%first%integral(t)
       end if
    end function integral
@@ -269,13 +274,14 @@ contains
       real(wp) :: node(order), weight(order), upper, lower
       integer :: i
 
+      value = unset
       if (allocated(self%second)) then
          value(0) = self%integral(dt)
          call gauss_nodes(node, weight)
          do i = 1, n - 1
             value(i) = dt*sum(weight*self%relaxation(dt*(real(i, wp) + node)))
          end do
-      else
+      else if (allocated(self%first)) then
          lower = 0.0_wp
          do i = 0, n - 1
             upper = self%first%integral(dt*real(i + 1, wp))
@@ -296,6 +302,7 @@ contains
 
       real(wp) :: rubbery_modulus, storage, loss
 
+      modulus = self%rubbery()
       if (allocated(self%terms)) then
          modulus = self%terms%complex_modulus(cmplx(0.0_wp, omega, wp))
       else if (allocated(self%second)) then
@@ -305,7 +312,7 @@ contains
          loss = sum(self%cosine_weight &
             *(self%relaxation(self%cosine_node/omega) - rubbery_modulus))
          modulus = cmplx(storage, loss, wp)
-      else
+      else if (allocated(self%first)) then
          modulus = self%first_factor*self%first%complex_modulus(cmplx(0.0_wp, omega, wp))
       end if
    end function dynamic_modulus
@@ -316,7 +323,8 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%first_factor*self%first%glassy()
+      modulus = unset
+      if (allocated(self%first)) modulus = self%first_factor*self%first%glassy()
       if (allocated(self%second)) &
          modulus = combined(modulus, self%second_factor*self%second%glassy())
    end function glassy
@@ -327,7 +335,8 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%first_factor*self%first%rubbery()
+      modulus = unset
+      if (allocated(self%first)) modulus = self%first_factor*self%first%rubbery()
       if (allocated(self%second)) &
          modulus = combined(modulus, self%second_factor*self%second%rubbery())
    end function rubbery
@@ -339,7 +348,8 @@ contains
       real(wp) :: viscosity
 
       viscosity = 0.0_wp
-      if (.not. allocated(self%second)) viscosity = self%first_factor*self%first%viscosity
+      if (allocated(self%first) .and. .not. allocated(self%second)) &
+         viscosity = self%first_factor*self%first%viscosity
    end function viscosity
 
    !> The contact modulus as a sum of exponentials
