@@ -64,6 +64,30 @@ def test_material_named_like_a_group(vcor):
     same(vcor, other, "plate.beta=600")
     other, _ = edit(text, "plate", "half_thickness", "0.03")
     same(vcor, other, "plate.half_thickness=0.03")
+    vcor.write(SLS.replace("'rubber'", "'material'"))
+    other, _ = edit(SLS, "material", "beta", "600.0")
+    same(vcor, other, "material.beta=600")
+
+
+@pytest.mark.parametrize(
+    "path, says",
+    [
+        ("plate.thicknes", ["&plate", "'half_thickness'"]),
+        ("plate.extnt", ["&plate", "'extent'"]),
+        ("plate.glassy_modul", ["&material", "'glassy_modulus'"]),
+        ("'plate'.dens", ["&material", "'density'"]),
+        ("plat.beta", ["neither", "'plate'"]),
+    ],
+)
+def test_misspelt_where_a_material_is_named_like_a_group(vcor, path, says):
+    """The nearest key is named, whichever of the two has it."""
+    text = SLS.replace("rubber", "plate")
+    vcor.write(text)
+    says = [*says, "did you mean"]
+    vcor.refuses("run", "case.nml", "--set", f"{path}=1.0", code=USAGE, at=f"--set {path}", says=says)
+    vcor.write(text + f'&sweep parameter = "{path}", values = 1.0, 2.0 /\n')
+    line = text.count("\n") + 1
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=says)
 
 
 def test_material_with_a_dot(vcor):

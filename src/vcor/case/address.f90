@@ -4,7 +4,7 @@ module vcor_case_address
    use vcor_case_catalogue, only : catalogue, find_group, find_key, group_names, groups, keys_of, &
       list_key
    use vcor_text, only : canonical_name, integer_text, shortened
-   use vcor_words, only : join_words, suggestion
+   use vcor_words, only : join_words, nearest_name, suggestion
    implicit none
    private
 
@@ -47,9 +47,11 @@ contains
       group = find_group(owner)
       item = case%find_material(owner)
       if (in_quotes) group = 0
-      ! a material may have the name of a group: the key decides
+      ! a material may have the name of a group: the key decides, a misspelt one by what it is near
       if (group > 0 .and. item > 0) then
-         if (find_key(owner, key) == 0) group = 0
+         if (groups(group)%label /= '' .or. find_key(owner, key) == 0 &
+            .and. (find_key('material', key) > 0 .or. nearest_name(key, keys_of(group)) == '')) &
+            group = 0
       end if
       if (group == 0 .and. item == 0) then
          message = "'"//shortened(owner)//"' is neither a group nor a material; " &
