@@ -11,7 +11,7 @@ module vcor_app_verify
    use vcor_text, only : integer_text
    use vcor_verify, only : build_law, evaluate_law, law_count, law_t, verdict_t
    use vcor_verify_methods, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
-      attempt_refined, compare, comparison_t, error_of_best, is_honest
+      attempt_refined, compare, compared_t, comparison_t, error_of_best, is_honest
    use vcor_verify_models, only : model_t, solve_models
    use vcor_version, only : version
    implicit none
@@ -125,10 +125,7 @@ contains
       if (allocated(comparison%objection)) then
          text = text//'  not verified: '//comparison%objection//nl
       else if (comparison%separated) then
-         text = text//'  verified: '//integer_text(comparison%compared(1)%digits) &
-            //' digits of cor = '//significant(comparison%compared(1)%value(attempt_first), 12, 0) &
-            //' can be trusted, the best value is ' &
-            //significant(comparison%compared(1)%best, 12, 0)//nl
+         text = text//'  verified: '//trusted_text(comparison%compared(1))//nl
          if (comparison%attempts(attempt_case)%made) text = text//'  the cor of the scheme ' &
             //'that the case asks for is off by '//short( &
             comparison%attempts(attempt_case)%distance(1))//nl
@@ -160,11 +157,14 @@ contains
             else if (this%outcome%status /= contact_separated) then
                text = text//right(status_name(this%outcome%status), 16)//nl
             else
-               text = text//known(this%outcome%cor, this%outcome%cor_error) &
-                  //known(this%outcome%cor_sphere, this%outcome%cor_sphere_error) &
-                  //significant(this%outcome%contact_time, 8, 18) &
-                  //significant(visible(this%outcome%residual_indentation, &
-                  this%outcome%max_indentation), 8, 26)//nl
+               ! those without an error of their own are known about as well as cor_sphere
+               associate (d => known_digits(1.0_wp, this%outcome%cor_sphere_error, 8))
+                  text = text//known(this%outcome%cor, this%outcome%cor_error) &
+                     //known(this%outcome%cor_sphere, this%outcome%cor_sphere_error) &
+                     //significant(this%outcome%contact_time, d, 18) &
+                     //part(this%outcome%residual_indentation, this%outcome%max_indentation, &
+                     d, 0, 26)//nl
+               end associate
             end if
          end associate
       end do
@@ -177,9 +177,55 @@ contains
          real(wp), intent(in) :: value, error
          character(len=:), allocatable :: digits
 
-         digits = significant(value, max(2, min(8, floor(-log10(max(error, tiny(error)))))), 16)
+         digits = significant(value, known_digits(value, error, 8), 16)
       end function known
    end function models_text
+
+   !> Significant digits that an error leaves of a number, at least two
+   pure function known_digits(value, error, most) result(digits)
+      real(wp), intent(in) :: value
+      !> Error of the number, >= 0
+      real(wp), intent(in) :: error
+      !> Most digits
+      integer, intent(in) :: most
+      integer :: digits
+
+      ! below any error, so that nothing is divided by zero
+      real(wp), parameter :: least = 1.0e-20_wp
+
+      digits = max(2, min(most, floor(log10(max(0.1_wp, abs(value)/max(error, least))))))
+   end function known_digits
+
+   !> A part of a whole with the digits that it has where the whole has `digits`; 0 if it has none
+   pure function part(value, whole, digits, more, width) result(text)
+      real(wp), intent(in) :: value
+      !> The whole, > 0
+      real(wp), intent(in) :: whole
+      !> Digits of the whole that can be trusted
+      integer, intent(in) :: digits
+      !> Further digits to show, for comparison
+      integer, intent(in) :: more
+      integer, intent(in) :: width
+      character(len=:), allocatable :: text
+
+      real(wp) :: seen
+
+      seen = visible(value, whole, digits)
+      text = right('0', width)
+      if (abs(seen) > 0.0_wp) text = significant(seen, &
+         max(2, min(12, digits + more + nint(log10(abs(seen)/whole)))), width)
+   end function part
+
+   !> What can be trusted of a quantity: its best value, to as many digits
+   pure function trusted_text(quantity) result(text)
+      type(compared_t), intent(in) :: quantity
+      character(len=:), allocatable :: text
+
+      text = 'no digit of '//trim(quantity%name)//' can be trusted'
+      if (quantity%digits > 0) text = integer_text(quantity%digits)//' digits of ' &
+         //trim(quantity%name)//' = '//significant(quantity%best, quantity%digits, 0) &
+         //' can be trusted'
+   end function trusted_text
 
    !> Table of all solutions: settings, cor and its stated and true errors
    function attempts_text(comparison) result(text)
@@ -210,7 +256,9 @@ contains
             honest = ''
             if (i /= attempt_case) honest = &
                merge('  honest ', '  TOO LOW', all(is_honest(this, error_of_best(comparison))))
-            text = text//significant(this%outcome%cor, 11, 17)//column(this%outcome%cor_error, 9) &
+            text = text//significant(this%outcome%cor, &
+               2 + known_digits(this%outcome%cor, this%outcome%cor_error, 9), 17) &
+               //column(this%outcome%cor_error, 9) &
                //column(this%distance(1), 9)//column(this%imbalance(), 9)//trim(honest)//nl
          end associate
       end do
@@ -240,13 +288,13 @@ contains
 
    contains
 
-      !> A value of the quantity; 0 if none of its digits can be trusted
+      !> A value of the quantity, with two digits more than can be trusted, where the methods differ
       function value_text(value)
          real(wp), intent(in) :: value
          character(len=:), allocatable :: value_text
 
          associate (this => comparison%compared(i))
-            value_text = significant(visible(value, this%scale, this%digits), 12, 19)
+            value_text = part(value, this%scale, this%digits, 2, 19)
          end associate
       end function value_text
    end function values_text

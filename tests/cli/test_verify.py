@@ -258,6 +258,27 @@ def test_small_numbers(vcor):
         assert len(line) <= 100
 
 
+def significant(number):
+    """Number of significant digits of a printed number."""
+    return len(number.partition("E")[0].lstrip("-").replace(".", "").lstrip("0"))
+
+
+def test_no_digits_that_cannot_be_trusted(vcor):
+    """Both methods share the compliance of a layer: the error that they state counts too."""
+    vcor.write(SLS)
+    out = vcor.succeeds("verify", "case.nml", "--set", "plate.waves=body")
+    n, value = re.search(r"verified: (\d+) digits of cor = (\S+) can be trusted$", out, re.M).groups()
+    assert significant(value) == int(n) == digits(out)["cor"] <= 5
+    _, refined, *_ = solutions(out)
+    assert float(refined[4]) < float(value) * 10.0 ** -int(n)
+    shown = {line.split()[0]: line.split()[1:4] for line in out.splitlines() if line[-1:].isdigit()}
+    for name, trusted in digits(out).items():
+        assert all(significant(number) <= trusted + 2 for number in shown[name])
+    table = out[out.index("effect of the choice") :]
+    (row,) = [line.split()[3:] for line in table.splitlines() if line.startswith("* ")]
+    assert significant(row[0]) <= 4 and all(significant(number) <= 7 for number in row[1:])
+
+
 def test_scheme_of_the_case(vcor):
     """The paper's scheme is shown beside the others, as far off as it is."""
     out = vcor.succeeds("verify", PAPER / "sls_printed.nml")

@@ -335,7 +335,9 @@ contains
 
    !> Compare one quantity. Its best value is that of the refined internal variables or, with one
    !> method, the limit of product integration. Its trusted digits follow from the value farthest
-   !> from it, that at the accuracy of the case or the limit of the other method
+   !> from it, that at the accuracy of the case or the limit of the other method, and from the error
+   !> that the best value states: what both methods have in common, such as the compliance of a
+   !> layer, moves no two values apart
    pure subroutine tabulate(self, name, attempts, two_methods)
       type(compared_t), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -356,6 +358,11 @@ contains
       if (two_methods) then
          self%best = self%value(attempt_refined)
          uncertainty(1) = abs(self%direct%limit - self%best)
+         associate (outcome => attempts(attempt_refined)%outcome)
+            if (name == 'cor') uncertainty(1) = max(uncertainty(1), outcome%cor_error)
+            if (name == 'cor_sphere') &
+               uncertainty(1) = max(uncertainty(1), outcome%cor_sphere_error)
+         end associate
       else
          self%best = self%direct%limit
          uncertainty(1) = self%direct%error
