@@ -180,6 +180,37 @@ def test_contacts_that_do_not_end(vcor, law, reason):
     assert done.code == NUMERICAL and reason in done.err
 
 
+SHEET = """
+&impact velocity = {} /
+&sphere radius = {}, material = 'ball' /
+&plate material = 'sheet', waves = 'body', half_thickness = {} /
+&contact law = 'receding', pair = 'series' /
+&material name = 'ball', model = 'rigid', density = {} /
+&material name = 'sheet', density = {}, poisson_ratio = {}, {} /
+"""
+DASHPOT = "model = 'prony', equilibrium_modulus = {}, viscosity = {}"
+# sphere and sheet go along with each other, and the indentation is largest for so long that a rest of its velocity
+# counts there
+SHEETS = {
+    "the bodies do not separate .* the plate is too light: .* lambda of 7.97E[+]02 ": (
+        (0.411059, 0.00101734, 2.19052e-05, 7800, 399.979, 0.35, DASHPOT.format("2.59104e8", "8723.5"))
+    ),
+    "the force is largest before the sum .* take a larger plate.half_thickness or a lighter sphere": (
+        (0.069809, 0.012685, 0.000366098, 2500, 208.726, 0.49, DASHPOT.format("3.40983e8", "8363.87"))
+    ),
+    "creeps to zero so slowly that its end is lost in rounding": (
+        (0.348045, 0.00726782, 0.000856998, 2500, 191.531, 0.35, "model = 'elastic', modulus = 2.53947e7")
+    ),
+}
+
+
+@pytest.mark.parametrize("reason", SHEETS)
+def test_reason_of_a_light_sheet(vcor, reason):
+    vcor.write(SHEET.format(*SHEETS[reason]))
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and re.search(reason, done.err) and done.err.count("\n") == 1
+
+
 SOFT_CASE = """
 &impact velocity = 10.0 /
 &sphere radius = 0.01, material = 'steel' /

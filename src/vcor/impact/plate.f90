@@ -184,11 +184,15 @@ contains
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
-      !> Deflection per impulse [m/(N s)]
+      !> Deflection per impulse [m/(N s)]; of a layer, that of an impulse spread over the time
       real(wp) :: value
+
+      real(wp), parameter :: enough = 1.0e-3_wp
 
       value = self%alpha(t)
       if (allocated(self%memory)) value = value + self%memory_integral(t)
+      if (self%layered()) value = sum(real(self%layer%compliance(cmplx(1.0_wp/t, 0.0_wp, wp), &
+         [self%footprint], enough), wp))/t
    end function alpha_after
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'

@@ -103,14 +103,13 @@ contains
          if (complete .or. allocated(error)) exit
          window = growth*window
       end do
-      if (impact%plate%layered() .and. trajectory%status == contact_separated) then
-         if (trajectory%time_of_max_force < layer_start*window) then
-            call raise(error, error_numerical, 'the force is largest before the sum of ' &
-               //'exponentials of the plate begins to hold: the plate is too soft, too thin or ' &
-               //'too light for this sphere')
-            return
-         end if
-      end if
+      if (impact%plate%layered() .and. trajectory%steps > 0 .and. (allocated(error) &
+          .or. trajectory%status == contact_separated) &
+          .and. trajectory%time_of_max_force < layer_start*window) call raise(error, &
+         error_numerical, 'the force is largest before the sum of exponentials of the plate ' &
+         //'begins to hold: the plate is too soft, too thin or too light for this sphere; take a ' &
+         //'larger plate.half_thickness or a lighter sphere')
+      if (allocated(error)) return
       trajectory%accuracy = self%settings%accuracy
       if (impact%plate%layered()) trajectory%accuracy = max(trajectory%accuracy, layer_reach)
       if (trajectory%status == contact_separated) then

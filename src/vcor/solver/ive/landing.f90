@@ -109,8 +109,10 @@ contains
             call solve_cut(problem, last, start, step, panel, inverse)
             if (.not. panel%converged) return
             call find_velocity()
-            if (abs(velocity(panel%stages)) <= sqrt(accuracy)*problem%impact%velocity) return
             fall = -slope_at_end(rule, panel, velocity)
+            ! on a plate that goes along, the velocity falls slowly: t1 does not fall before it is 0
+            if (abs(velocity(panel%stages)) <= sqrt(accuracy)*min(problem%impact%velocity, &
+                fall*time)) return
             panel%converged = fall > 0.0_wp .and. fall*time > -velocity(panel%stages)
             if (.not. panel%converged) return
             time = time + velocity(panel%stages)/fall

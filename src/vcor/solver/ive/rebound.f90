@@ -65,6 +65,8 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! t1 over the time of the approach: the force is 1e-9 of its largest value
+      real(wp), parameter :: lost = 1.0e-6_wp
       type(rebound_t) :: rebound
       integer :: trial
       logical :: over
@@ -101,7 +103,9 @@ contains
             end if
             ! a contact that its weight makes grow again may not separate any more
             call trajectory%stop_at_rest(rebound%problem%impact, .true., over)
-            if (.not. over) call refuse_growth(rebound%problem%impact, error)
+            if (over) return
+            if (rebound%start%t1 < lost*approach%end) exit
+            call refuse_growth(rebound%problem%impact, error)
             return
          end if
          call accept(rebound, trajectory)
@@ -109,6 +113,11 @@ contains
          if (over) return
          call go_on(rebound)
       end do
+      if (rebound%start%t1 < lost*approach%end) then
+         call raise(error, error_numerical, 'the force of this contact creeps to zero so slowly ' &
+            //'that its end is lost in rounding: next to nothing of the velocity comes back')
+         return
+      end if
       call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
          //'of the contact: the accuracy asked for is out of reach')
    end subroutine follow_rebound
