@@ -97,6 +97,21 @@ fpm_builds() {
    "$venv/bin/fpm" run from_case --flag -O0 --directory build/consumer
 }
 
+run_linters() {
+   "$venv/bin/fortitude" check
+   "$venv/bin/ruff" check python
+   "$venv/bin/ruff" format --check python
+   (cd python && "$venv/bin/mypy")
+}
+
+# wait_for PROCESS FILE: the end of a process beside the others; shows what it has printed
+wait_for() {
+   local code=0
+   wait "$1" || code=$?
+   cat "$2"
+   [ $code -eq 0 ]
+}
+
 begin "set-up"
 scripts/setup.sh --tests
 
@@ -109,23 +124,19 @@ wait $environment
 build release
 run_tests release
 
-build debug -DVCOR_BENCHMARKS=OFF
-# fpm compiles one file after the other at times: beside the tests
+# fpm compiles one file after the other at times, and a linter takes one core: beside the debug build
 fpm_builds &>build/fpm.txt &
 fpm=$!
+run_linters &>build/linters.txt &
+linters=$!
+build debug -DVCOR_BENCHMARKS=OFF
 run_tests debug
 begin "fpm: the program, and a project that depends on vcor"
-code=0
-wait $fpm || code=$?
-cat build/fpm.txt
-[ $code -eq 0 ]
+wait_for $fpm build/fpm.txt
 grep -q '^COR  *0\.40729242 ' build/fpm.txt
 passed=$((passed + 1))
 
 begin "linters"
-"$venv/bin/fortitude" check
-"$venv/bin/ruff" check python
-"$venv/bin/ruff" format --check python
-(cd python && "$venv/bin/mypy")
+wait_for $linters build/linters.txt
 
 begin "end"
