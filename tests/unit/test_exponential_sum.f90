@@ -154,6 +154,12 @@ contains
          call check_relative(integral(terms, 1.0e-5_wp), material%integral(1.0e-5_wp), 1.0e-8_wp, &
             "the integral of a power law next to a dashpot")
       end do
+      do i = 1, 8
+         call make("power_law", 1.0_wp - 0.002_wp*real(i, wp), material)
+         call material%exponentials(1.0e-3_wp, 1.0e-6_wp, terms)
+         call check_relative(integral(terms, 1.0e-3_wp), material%integral(1.0e-3_wp), 1.0e-7_wp, &
+            "what lies beyond all rates is added")
+      end do
    end subroutine test_near_one
 
    !> Materials in series have the features of their spectrum where it pleases: few refinements find

@@ -94,6 +94,10 @@ contains
             if (digits == 4) steps(i) = outcome%steps
          end do
       end do
+      call make_ive(0.1_wp, solver)
+      call run(solver, singular, outcome)
+      call check_close(outcome%cor, power_law_cor, 1.0e-6_wp, &
+         "ive: six digits cost no more than one, and are given")
    end subroutine test_ive_accuracy
 
    !> At every accuracy the error of random impacts is below it, and their estimates are its size:
