@@ -15,9 +15,9 @@ module vcor_material_signed_fit
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
    use vcor_numeric_quadrature, only : graded_rule
-   use vcor_tuning, only : digits_lost, earliest_sample, fast_rate, faster_term, &
-      fastest_rate, full_weight, integral_felt, most_digits_lost, rate_spacing, samples_per_rate, &
-      slowest_rate, weight_power, wide_spacing
+   use vcor_tuning, only : digits_lost, earliest_sample, fast_rate, fastest_rate, &
+      integral_felt, most_digits_lost, rate_spacing, samples_per_rate, slowest_rate, weight_power, &
+      wide_spacing
    implicit none
    private
 
@@ -90,7 +90,7 @@ contains
       time = [time(1)*exp(-wide_spacing/real(samples_per_rate, wp) &
          *[(real(n + 1 - i, wp), i=1, n)]), time]
       self%samples = size(time)
-      self%weight = min(1.0_wp, time/full_weight)**weight_power
+      self%weight = time**weight_power
 
       call graded_rule(ends, node, self%share, self%last)
       self%time = [time, node]
@@ -164,9 +164,9 @@ contains
       call find_moduli(self, modulus(:self%samples)/mean, integrals(checked)/mean, moduli, n, &
          terms%error)
       terms%equilibrium = mean*moduli(1)
-      terms%rates = [self%rate(2:n), faster_term*maxval(self%rate)]/window
+      terms%rates = [self%rate(2:n), maxval(self%rate)]/window
       terms%moduli = mean*[moduli(2:n), 0.0_wp]
-      ! the fastest term corrects the integral up to the time from which values count
+      ! one term of the fastest rate corrects the integral up to the time from which values count
       do i = 1, checked
          excess(i) = terms%integral(ends(i)*window) - integrals(i)*window
       end do
