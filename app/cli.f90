@@ -2,7 +2,7 @@
 module vcor_app_cli
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_app_commands, only : commands, missing_package, options_of, package_names
-   use vcor_case_real, only : read_real
+   use vcor_number, only : read_real
    use vcor_error, only : error_t, error_usage, raise
    use vcor_fit, only : estimate_t
    use vcor_io_header, only : frequency_units, modulus_units, time_units

@@ -6,7 +6,7 @@ module vcor_app_help
    use vcor_app_external, only : external_commands
    use vcor_case_catalogue, only : described_keys, groups, key_t, kind_name, range_text
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
-   use vcor_material_parameter, only : interval_text
+   use vcor_number, only : interval_text
    use vcor_json, only : array, member, object, strings, words
    use vcor_words, only : contains_word, nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &

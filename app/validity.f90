@@ -21,7 +21,8 @@ module vcor_app_validity
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
-   use vcor_text, only : integer_text, printable, real_text
+   use vcor_number, only : real_text
+   use vcor_text, only : integer_text, printable
    use vcor_verify_models, only : differ, model_t, solve_model
    implicit none
    private

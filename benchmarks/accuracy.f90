@@ -11,7 +11,7 @@ program accuracy
    use vcor, only : case_t, error_t, override, read_case, read_case_text, wp
    use vcor_benchmark_reference, only : reference_cor
    use vcor_benchmark_stopwatch, only : measure, measurement_t, seconds, stop_on
-   use vcor_text, only : real_text
+   use vcor_number, only : real_text
    implicit none
 
    !> Longest time of an impact [s]

@@ -28,7 +28,8 @@ module vcor_c_api
       solve_points, sweep_t, worker_t
    use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
       quantity_names, quantity_place, quantity_t, summary_t
-   use vcor_text, only : canonical_name, integer_text, real_text, shortened
+   use vcor_number, only : real_text
+   use vcor_text, only : canonical_name, integer_text, shortened
    use vcor_verify_methods, only : attempt_first, compare, compared_names, comparison_t
    use vcor_version, only : version
    use vcor_words, only : suggestion

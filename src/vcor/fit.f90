@@ -2,7 +2,8 @@
 module vcor_fit
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : interval_text, is_within, linear, parameter_t
+   use vcor_material_type, only : linear, parameter_t
+   use vcor_number, only : interval_text, is_within
    use vcor_text, only : integer_text, printable
    use vcor_words, only : join_words
    use vcor_fit_law_problem, only : stated_parameters

@@ -3,7 +3,8 @@
 module vcor_json
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_kinds, only : wp
-   use vcor_text, only : is_control, real_text
+   use vcor_number, only : real_text
+   use vcor_text, only : is_control
    implicit none
    private
 

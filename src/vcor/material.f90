@@ -6,13 +6,12 @@ module vcor_material
    use vcor_material_cerf, only : cerf_parameters, cerf_t, new_cerf
    use vcor_material_mittag_leffler, only : mittag_leffler_parameters, mittag_leffler_t, &
       new_mittag_leffler
-   use vcor_material_parameter, only : density, parameter_t, power_of_time
    use vcor_material_power_law, only : new_power_law, power_law_parameters, power_law_t
    use vcor_material_prony, only : elastic_parameters, new_elastic, new_prony, new_rigid, new_sls, &
       prony_parameters, prony_t, rigid_parameters, sls_parameters
    use vcor_material_shift, only : shift_parameters, shift_t
    use vcor_material_table, only : new_tabulated, table_parameters, tabulated_t
-   use vcor_material_type, only : material_t
+   use vcor_material_type, only : density, material_t, parameter_t, power_of_time
    use vcor_words, only : join_words
    implicit none
    private

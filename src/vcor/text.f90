@@ -1,12 +1,9 @@
-!> Operations on texts: case, names, numbers in their shortest form, and foreign text made safe for
-!> a one-line message
+!> Operations on texts: case, names, and foreign text made safe for a one-line message
 module vcor_text
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
-   use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: lower, canonical_name, integer_text, real_text, quoted
+   public :: lower, canonical_name, integer_text, quoted
    public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
    public :: text_flaw, link_name
    public :: buffer_t
@@ -15,8 +12,6 @@ module vcor_text
    integer, parameter :: shown_bytes = 60
    !> Longest text of a case [bytes]
    integer, parameter :: longest_text = 4096
-   !> Largest magnitude that can be rounded to fewer digits without overflow
-   real(wp), parameter :: round_limit = 1.0e300_wp
 
    !> A growing text
    type :: buffer_t
@@ -84,63 +79,6 @@ contains
       end do
       between = between//text(start:)//"'"
    end function quoted
-
-   !> A real number in the shortest form that restores the same bits: `0.01`, `7.0e10`
-   pure function real_text(number) result(text)
-      !> The number, finite or not
-      real(wp), intent(in) :: number
-      !> Its text, at most 24 characters
-      character(len=:), allocatable :: text
-      character(len=*), parameter :: formats(3) = ["(es32.14e3)", "(es32.15e3)", "(es32.16e3)"]
-      character(len=32) :: buffer
-      real(wp) :: back
-      integer :: digits, status
-
-      if (.not. ieee_is_finite(number)) then
-         text = trim(merge("NaN     ", "Infinity", ieee_is_nan(number)))
-         return
-      end if
-      do digits = merge(1, size(formats), abs(number) < round_limit), size(formats)
-         write(buffer, formats(digits)) number
-         if (digits == size(formats)) exit
-         read(buffer, *, iostat=status) back
-         if (status == 0 .and. abs(back - number) <= 0.0_wp) exit
-      end do
-      text = tidied(trim(adjustl(buffer)))
-   end function real_text
-
-   !> A number from an `es` format, without superfluous zeros
-   pure function tidied(scientific) result(text)
-      !> Such as `-1.50000000000000E+003`
-      character(len=*), intent(in) :: scientific
-      !> Such as `-1500.0`
-      character(len=:), allocatable :: text
-      character(len=:), allocatable :: digits, sign
-      integer, parameter :: fixed_below = 6, fixed_above = -5
-      integer :: start, mark, exponent, length
-
-      sign = ""
-      start = 1
-      if (scientific(1:1) == "-") then
-         sign = "-"
-         start = 2
-      end if
-      mark = index(scientific, "E")
-      read(scientific(mark+1:), *) exponent
-      digits = scientific(start:start)//scientific(start+2:mark-1)
-      length = max(1, verify(digits, "0", back=.true.))
-      digits = digits(:length)
-
-      if (exponent >= fixed_below .or. exponent <= fixed_above) then
-         if (length == 1) digits = digits//"0"
-         text = sign//digits(1:1)//"."//digits(2:)//"e"//integer_text(exponent)
-      else if (exponent < 0) then
-         text = sign//"0."//repeat("0", -exponent - 1)//digits
-      else
-         if (length < exponent + 2) digits = digits//repeat("0", exponent + 2 - length)
-         text = sign//digits(:exponent+1)//"."//digits(exponent+2:)
-      end if
-   end function tidied
 
    !> Whether a text contains control characters
    pure function has_control(text) result(yes)

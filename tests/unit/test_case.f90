@@ -12,7 +12,8 @@ program test_case
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
    use vcor_words, only : edit_distance, nearest_name
-   use vcor_text, only : integer_text, is_utf8, printable, quoted, real_text, shortened
+   use vcor_number, only : real_text
+   use vcor_text, only : integer_text, is_utf8, printable, quoted, shortened
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
 

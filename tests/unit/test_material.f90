@@ -11,7 +11,8 @@ program test_material
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
-   use vcor_material_parameter, only : is_within, linear, parameter_t, power_of_time
+   use vcor_material_type, only : linear, parameter_t, power_of_time
+   use vcor_number, only : is_within
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes

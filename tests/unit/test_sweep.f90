@@ -5,7 +5,6 @@ program test_sweep
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : override, read_case_text
-   use vcor_material_parameter, only : spaced
    use vcor_kinds, only : wp
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, operator(==)
@@ -18,7 +17,7 @@ program test_sweep
    use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, &
       solve_points, sweep_t, worker_t
    use vcor_test_watch, only : stops, watch_t
-   use vcor_text, only : real_text
+   use vcor_number, only : real_text, spaced
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
 

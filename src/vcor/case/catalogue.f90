@@ -8,7 +8,8 @@
 module vcor_case_catalogue
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models
-   use vcor_material_parameter, only : density, interval_t, interval_text, positive
+   use vcor_material_type, only : density
+   use vcor_number, only : interval_t, interval_text, positive
    use vcor_material_shift, only : shift_laws, shift_parameters
    use vcor_text, only : lower
    use vcor_words, only : contains_word, join_words

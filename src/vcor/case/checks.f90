@@ -13,7 +13,8 @@ module vcor_case_checks
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
    use vcor_material_shift, only : keys_needed, shift_keys
-   use vcor_text, only : canonical_name, printable, quoted, real_text, shortened
+   use vcor_number, only : real_text
+   use vcor_text, only : canonical_name, printable, quoted, shortened
    use vcor_words, only : join_words, suggestion
    implicit none
    private

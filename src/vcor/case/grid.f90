@@ -5,13 +5,13 @@
 !> whose axes vary together.
 module vcor_case_grid
    use vcor_error, only : error_file, error_t, raise
-   use vcor_material_parameter, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
       row_for_model
-   use vcor_text, only : integer_text, link_name, real_text, shortened
+   use vcor_number, only : log_spacing, real_text, spaced
+   use vcor_text, only : integer_text, link_name, shortened
    use vcor_case_unread, only : why_unread
    use vcor_words, only : join_words
    implicit none

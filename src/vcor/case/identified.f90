@@ -18,8 +18,7 @@ module vcor_case_identified
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, parameters_of
    use vcor_material_moduli, only : sampled_times, time_range_t
-   use vcor_material_parameter, only : parameter_t
-   use vcor_material_type, only : material_t
+   use vcor_material_type, only : material_t, parameter_t
    implicit none
    private
 

@@ -5,7 +5,7 @@ module vcor_case_plausibility
       list_key, real_key, row_for_model
    use vcor_case_grid, only : grid_t
    use vcor_kinds, only : wp
-   use vcor_text, only : real_text
+   use vcor_number, only : real_text
    implicit none
    private
 

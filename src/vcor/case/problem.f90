@@ -34,7 +34,7 @@ module vcor_case_problem
    use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of
-   use vcor_material_parameter, only : density, parameter_t
+   use vcor_material_type, only : density, parameter_t
    use vcor_material_shift, only : shift_parameters
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_text, only : integer_text, quoted, shortened

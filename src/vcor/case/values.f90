@@ -4,10 +4,9 @@ module vcor_case_values
    use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, text_key, &
       wanted
    use vcor_case_namelist, only : value_t, values_in
-   use vcor_case_real, only : looks_numeric, read_real
-   use vcor_material_parameter, only : contains_number, is_computable
+   use vcor_number, only : contains_number, is_computable, looks_numeric, read_real, real_text
    use vcor_kinds, only : wp
-   use vcor_text, only : integer_text, lower, quoted, real_text, shortened, text_flaw
+   use vcor_text, only : integer_text, lower, quoted, shortened, text_flaw
    use vcor_words, only : contains_word, nearest_name, spelled
    implicit none
    private

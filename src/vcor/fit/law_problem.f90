@@ -11,7 +11,7 @@ module vcor_fit_law_problem
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of
    use vcor_fit_result, only : estimate_t, state_bound, state_fixed, state_free
    use vcor_fit_samples, only : moduli_of, samples_t
-   use vcor_material_parameter, only : linear, parameter_t, power_of_time
+   use vcor_material_type, only : linear, parameter_t, power_of_time
    use vcor_numeric_least_squares, only : least_squares_t
    use vcor_numeric_nnls, only : solve_nnls
    implicit none

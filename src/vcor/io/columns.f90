@@ -5,10 +5,10 @@
 !> mark are ignored. Numbers may have decimal commas if columns are separated by something else. A
 !> line `sep=;` counts as blank.
 module vcor_io_columns
-   use vcor_case_real, only : looks_numeric, read_real
    use vcor_kinds, only : wp
    use vcor_material_table, only : largest_value, smallest_value
-   use vcor_text, only : has_control, lower, real_text
+   use vcor_number, only : looks_numeric, read_real, real_text
+   use vcor_text, only : has_control, lower
    implicit none
    private
 

@@ -18,8 +18,8 @@ module vcor_io_data_file
    use vcor_kinds, only : wp
    use vcor_material_table, only : modulus_rounding
    use vcor_case_case, only : case_t
-   use vcor_case_real, only : read_real
-   use vcor_text, only : integer_text, lower, printable, real_text, shortened
+   use vcor_number, only : read_real, real_text
+   use vcor_text, only : integer_text, lower, printable, shortened
    use vcor_words, only : contains_word
    implicit none
    private

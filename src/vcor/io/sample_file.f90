@@ -26,7 +26,8 @@ module vcor_io_sample_file
       role_tangent, role_time, temperature_names, time_units, unit_size
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
-   use vcor_text, only : has_control, integer_text, printable, real_text, shortened
+   use vcor_number, only : real_text
+   use vcor_text, only : has_control, integer_text, printable, shortened
    use vcor_words, only : contains_word
    implicit none
    private

@@ -5,8 +5,9 @@ module vcor_material_cerf
    use vcor_constants, only : pi, sqrt_pi
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : check_values, equilibrium_modulus, parameter_t, &
-      poisson_ratio, positive, relaxing_modulus
+   use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio, &
+      relaxing_modulus
+   use vcor_number, only : positive
    use vcor_material_spectrum, only : fractional_t
    implicit none
    private

@@ -5,8 +5,9 @@ module vcor_material_mittag_leffler
    use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : check_values, equilibrium_modulus, interval_t, &
-      parameter_t, poisson_ratio, positive, relaxing_modulus
+   use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio, &
+      relaxing_modulus
+   use vcor_number, only : interval_t, positive
    use vcor_material_spectrum, only : fractional_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
    implicit none

@@ -4,10 +4,9 @@ module vcor_material_moduli
       ieee_quiet_nan, ieee_value
    use vcor_constants, only : pi
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_material_parameter, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_text, only : real_text
+   use vcor_number, only : log_spacing, real_text, spaced
    implicit none
    private
 

@@ -5,8 +5,8 @@ module vcor_material_power_law
    use vcor_constants, only : unset
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : between_0_and_1, check_values, equilibrium_modulus, &
-      parameter_t, poisson_ratio, positive
+   use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio
+   use vcor_number, only : between_0_and_1, positive
    use vcor_material_spectrum, only : fractional_t
    implicit none
    private

@@ -7,9 +7,9 @@ module vcor_material_prony
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_parameter, only : check_values, equilibrium_modulus, linear, not_negative, &
-      parameter_t, poisson_ratio, positive
-   use vcor_material_type, only : material_t
+   use vcor_number, only : not_negative, positive
+   use vcor_material_type, only : check_values, equilibrium_modulus, linear, material_t, &
+      parameter_t, poisson_ratio
    implicit none
    private
 

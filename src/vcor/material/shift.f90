@@ -13,7 +13,8 @@ module vcor_material_shift
    use vcor_constants, only : gas_constant
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : parameter_t, positive
+   use vcor_material_type, only : parameter_t
+   use vcor_number, only : positive
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    implicit none
    private

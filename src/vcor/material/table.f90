@@ -5,8 +5,7 @@ module vcor_material_table
    use vcor_kinds, only : wp
    use vcor_material_exponential_fit, only : fit_exponentials
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_parameter, only : parameter_t, poisson_ratio
-   use vcor_material_type, only : material_t
+   use vcor_material_type, only : material_t, parameter_t, poisson_ratio
    use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    use vcor_tuning, only : samples_per_decade

@@ -1,16 +1,17 @@
-!> Abstract type of a linear viscoelastic material: all that solvers use of it
+!> A linear viscoelastic material: all that solvers use of it, and the parameters of its models
 module vcor_material_type
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_constants, only : pi
-   use vcor_error, only : error_t
+   use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_parameter, only : check_values, density_range => density, &
-      poisson_ratio_range => poisson_ratio
+   use vcor_number, only : interval_t, interval_text, is_within, not_negative, positive, real_text
    implicit none
    private
 
    public :: material_t
+   public :: parameter_t, check_values, power_of_time, linear, logarithmic
+   public :: density, poisson_ratio, equilibrium_modulus, relaxing_modulus
 
    !> A material. Its modulus does not change after construction, so threads can share it; before,
    !> it is NaN
@@ -51,10 +52,57 @@ module vcor_material_type
       procedure :: is_built
       procedure :: elastic
       procedure :: plane_strain_factor
-      procedure :: density
-      procedure :: poisson_ratio
+      procedure :: density => density_of
+      procedure :: poisson_ratio => poisson_ratio_of
       procedure :: set_constants
    end type material_t
+
+   !> Scale of a parameter that may be 0, such as a term of a sum
+   integer, parameter :: linear = 1
+   !> Scale of a parameter that is a factor
+   integer, parameter :: logarithmic = 2
+
+   !> A parameter of a model, a number or a list. Each model states its parameters once, in its own
+   !> file; the keys of `&material`, the checks of its constructor and the bounds of a fit follow
+   type :: parameter_t
+      !> Name, which is the key in &material
+      character(len=26) :: name = ''
+      !> Meaning, one line
+      character(len=72) :: meaning = ''
+      !> Unit, blank for none
+      character(len=8) :: unit = ''
+      !> Range, in the unit above
+      type(interval_t) :: range = interval_t()
+      !> Whether it is required
+      logical :: required = .true.
+      !> Default as in a namelist; blank: none
+      character(len=12) :: default = ''
+      !> `linear` or `logarithmic`
+      integer :: scale = logarithmic
+      !> Whether `vcor fit` determines it
+      logical :: fitted = .false.
+      !> Whether it is a list of numbers
+      logical :: is_list = .false.
+      !> Parameter that may be given instead, but not in addition; blank: none
+      character(len=26) :: instead = ''
+   end type parameter_t
+
+   !> Parameter of every material
+   type(parameter_t), parameter :: density = parameter_t('density', &
+      'Density; for a sphere without mass, and for a plate with waves', 'kg/m3', positive, &
+      required=.false.)
+   !> Parameter of every material that deforms
+   type(parameter_t), parameter :: poisson_ratio = parameter_t('poisson_ratio', &
+      "Poisson's ratio", '', interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp))
+   !> Both, which `set_constants` sets
+   type(parameter_t), parameter :: constants(*) = [density, poisson_ratio]
+   !> Parameter of every model that may have an equilibrium modulus
+   type(parameter_t), parameter :: equilibrium_modulus = parameter_t('equilibrium_modulus', &
+      'Long-time modulus', 'Pa', not_negative, required=.false., default='0.0', &
+      scale=linear, fitted=.true.)
+   !> Parameter of the fractional models with a finite glassy modulus
+   type(parameter_t), parameter :: relaxing_modulus = parameter_t('relaxing_modulus', &
+      'Part of the modulus that relaxes', 'Pa', positive, fitted=.true.)
 
    abstract interface
       !> A function of time
@@ -138,22 +186,22 @@ contains
    end function plane_strain_factor
 
    !> Mass density
-   elemental function density(self)
+   elemental function density_of(self) result(density)
       class(material_t), intent(in) :: self
       !> Density [kg/m3], > 0; 0 if unknown
       real(wp) :: density
 
       density = self%mass_density
-   end function density
+   end function density_of
 
    !> Poisson's ratio, constant in time
-   elemental function poisson_ratio(self)
+   elemental function poisson_ratio_of(self) result(poisson_ratio)
       class(material_t), intent(in) :: self
       !> The ratio [-], -1 < nu <= 0.5
       real(wp) :: poisson_ratio
 
       poisson_ratio = self%nu
-   end function poisson_ratio
+   end function poisson_ratio_of
 
    !> Set density and Poisson's ratio, which do not affect the relaxation modulus; only while the
    !> material is being built, before threads share it
@@ -167,10 +215,10 @@ contains
       !> Poisson's ratio, in (-1, 0.5]; absent: unchanged, initially 0.5
       real(wp), intent(in), optional :: poisson_ratio
 
-      if (present(density)) call check_values('material', [density_range], [density], error)
+      if (present(density)) call check_values('material', constants(1:1), [density], error)
       if (allocated(error)) return
       if (present(poisson_ratio)) &
-         call check_values('material', [poisson_ratio_range], [poisson_ratio], error)
+         call check_values('material', constants(2:2), [poisson_ratio], error)
       if (allocated(error)) return
       if (present(density)) self%mass_density = density
       if (present(poisson_ratio)) self%nu = poisson_ratio
@@ -191,5 +239,41 @@ contains
 
       elastic = .not. (self%glassy() > self%rubbery() .or. self%viscosity > 0.0_wp)
    end function elastic
+
+   !> Check values against the ranges of their parameters
+   pure subroutine check_values(what, parameters, values, error)
+      !> Material model, for the message
+      character(len=*), intent(in) :: what
+      !> The parameters, shape (n)
+      type(parameter_t), intent(in) :: parameters(:)
+      !> Their values, shape (n)
+      real(wp), intent(in) :: values(:)
+      !> Error of code `error_input`, unallocated if all are within their ranges
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: unit
+      integer :: i
+
+      do i = 1, size(parameters)
+         if (is_within(parameters(i)%range, values(i))) cycle
+         unit = ''
+         if (parameters(i)%unit /= '') unit = ' ['//trim(parameters(i)%unit)//']'
+         call raise(error, error_input, what//', '//trim(parameters(i)%name)//': found ' &
+            //real_text(values(i))//', expected a number ' &
+            //interval_text(parameters(i)%range)//unit, about=trim(parameters(i)%name))
+         return
+      end do
+   end subroutine check_values
+
+   !> Power of time in a unit of times, rates or their roots; 0 for others
+   elemental function power_of_time(unit) result(power)
+      character(len=*), intent(in) :: unit
+      real(wp) :: power
+
+      power = merge(1.0_wp, 0.0_wp, unit == 's')
+      if (unit == '1/s') power = -1.0_wp
+      if (unit == 's^1/2') power = 0.5_wp
+      if (unit == 's^-1/2') power = -0.5_wp
+   end function power_of_time
 
 end module vcor_material_type

@@ -27,7 +27,7 @@ module vcor_sweep_points
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       contact_sticking, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : contains_number, interval_t
+   use vcor_number, only : contains_number, interval_t
    use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, rank_count, this_rank
    use vcor_sweep_part, only : most_threads, new_part, part_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
