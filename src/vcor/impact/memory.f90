@@ -14,8 +14,7 @@ module vcor_impact_memory
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_spectrum, only : rule_for_spectrum
-   use vcor_material_transform, only : transform_t
+   use vcor_material_spectrum, only : rule_for_spectrum, transform_t
    use vcor_material_type, only : material_t
    use vcor_numeric_elliptic, only : branch_rule
    implicit none

@@ -13,8 +13,7 @@ module vcor_material_in_series
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t, same_rate
    use vcor_material_prony, only : new_prony, prony_t
-   use vcor_material_spectrum, only : sum_of_resolved_spectrum
-   use vcor_material_transform, only : transform_t
+   use vcor_material_spectrum, only : sum_of_resolved_spectrum, transform_t
    use vcor_material_type, only : material_t
    implicit none
    private
