@@ -2,12 +2,11 @@
 module vcor_impact_contact
    use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_beside_elastic, only : sum_beside_elastic
+   use vcor_impact_pair, only : new_signed_fit, signed_fit_t, sum_beside_elastic
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
    use vcor_material_in_series, only : new_in_series
-   use vcor_material_signed_fit, only : new_signed_fit, signed_fit_t
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, graded_rule
    implicit none
