@@ -78,7 +78,7 @@ module vcor_impact_pair
 
 contains
 
-   !> The contact modulus as a sum of exponentials
+   !> The contact modulus with an elastic body as a sum of exponentials
    pure subroutine sum_beside_elastic(elastic, other, window, tolerance, terms, is_found)
       !> Plane-strain modulus of the elastic body [Pa], > 0
       real(wp), intent(in) :: elastic

@@ -2,6 +2,7 @@
 module vcor_impact_trajectory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_constants, only : unset
+   use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    implicit none
@@ -12,6 +13,7 @@ module vcor_impact_trajectory
    public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
    public :: contact_unknown, contact_separated, contact_lasting, contact_sticking, &
       contact_resting, history_steps
+   public :: refuse_growth
 
    !> Rows of `state`: time [s]
    integer, parameter :: col_time = 1
@@ -162,6 +164,23 @@ contains
          if (stopped) self%status = contact_sticking
       end if
    end subroutine stop_at_rest
+
+   !> Refuse a receding contact in which t1 grows. On a plate at rest and without weight s' only
+   !> falls, and t1' has its sign: there a rising t1 is rounding of a sphere that has come to rest
+   subroutine refuse_growth(impact, error)
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_numerical`
+      type(error_t), allocatable, intent(out) :: error
+
+      if (impact%plate%moves() .or. impact%gravity > 0.0_wp) then
+         call raise(error, error_numerical, "the contact grows again before it has ended, as on " &
+            //"a plate that is too light for the sphere, which method = 'ive' does not follow: " &
+            //"use method = 'direct'")
+      else
+         call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
+            //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")
+      end if
+   end subroutine refuse_growth
 
    !> Whether all motion has decayed in contact at the last node, for good: the remaining energy
    !> cannot cause a noticeable rebound. A contact with an equilibrium modulus, however soft, is

@@ -9,8 +9,7 @@ module vcor_solver_type
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, refuse_growth, &
-      method_for
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, method_for
 
    !> Length of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')
@@ -149,23 +148,6 @@ contains
          //' m, is smaller than the contact becomes, which has no solution: give a larger ' &
          //'plate.footprint, or none')
    end subroutine refuse_footprint
-
-   !> Refuse a receding contact in which t1 grows. On a plate at rest and without weight s' only
-   !> falls, and t1' has its sign: there a rising t1 is rounding of a sphere that has come to rest
-   subroutine refuse_growth(impact, error)
-      type(impact_t), intent(in) :: impact
-      !> Error of code `error_numerical`
-      type(error_t), allocatable, intent(out) :: error
-
-      if (impact%plate%moves() .or. impact%gravity > 0.0_wp) then
-         call raise(error, error_numerical, "the contact grows again before it has ended, as on " &
-            //"a plate that is too light for the sphere, which method = 'ive' does not follow: " &
-            //"use method = 'direct'")
-      else
-         call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
-            //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")
-      end if
-   end subroutine refuse_growth
 
    !> A number as text of fixed length: gfortran 12 keeps the length of a deferred-length function
    !> result in static storage, where threads collide

@@ -19,7 +19,7 @@ module vcor_solver_direct_product
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
-      contact_resting, contact_separated, trajectory_t
+      contact_resting, contact_separated, refuse_growth, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_convolution, only : lengthen, second_term_t
@@ -28,7 +28,7 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks, parabola
-   use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
+   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    use vcor_tuning, only : cancelled, enough_steps, first_steps, &
       last_part, layer_reach, least_part, most_for_all, most_for_layers, most_work, share_of_force
    implicit none

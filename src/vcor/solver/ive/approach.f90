@@ -17,8 +17,7 @@ module vcor_solver_ive_approach
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_radau_algebra, only : apply, constant, ratio, times, width
    use vcor_numeric_radau_collocation, only : collocation_t
-   use vcor_solver_ive_panel, only : panel_t
-   use vcor_solver_ive_step, only : step_t
+   use vcor_solver_ive_panel, only : panel_t, step_t
    use vcor_tuning, only : closest_to_vertex, gone
    implicit none
    private

@@ -22,11 +22,10 @@ module vcor_solver_ive_contact
       land_on_largest, land_on_zero, slope_at_end
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_newton, only : guess, solve, solve_companion
-   use vcor_solver_ive_panel, only : panel_t, plate_gains, relative_velocity
+   use vcor_solver_ive_panel, only : panel_t, step_to
+   use vcor_solver_ive_peaks, only : earlier_panel_t, find_peaks
    use vcor_solver_ive_problem, only : new_panel_problem
    use vcor_solver_ive_rebound, only : follow_rebound
-   use vcor_solver_ive_recording, only : begin, earlier_panel_t, find_peaks, record
-   use vcor_solver_ive_step, only : step_to
    use vcor_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
       first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
@@ -104,7 +103,7 @@ contains
          min(accuracy, finest_accuracy))
       contact%end_time = end_time
       call start(contact)
-      call begin(collocator%rule, impact, trajectory)
+      call contact%begin(trajectory)
       complete = .true.
       do trial = 1, most_panels
          ! a panel of no length: shorter ones do not help
@@ -226,7 +225,7 @@ contains
          self%turns = .false.
          self%ends = .false.
          if (self%panel%converged .and. self%recedes) then
-            self%turns = is_turning(problem%impact, self%panel)
+            self%turns = is_turning(self)
             if (self%turns) call land_on_largest(problem, self%start, self%velocity, &
                self%accuracy, self%step, self%panel, self%inverse)
          else if (self%panel%converged .and. trajectory%status /= contact_separated) then
@@ -244,16 +243,16 @@ contains
    end subroutine solve_panel
 
    !> Whether the indentation has begun to fall
-   pure function is_turning(impact, panel)
-      type(impact_t), intent(in) :: impact
-      type(panel_t), intent(in) :: panel
+   pure function is_turning(self)
+      !> The contact, its panel solved
+      type(contact_t), intent(in) :: self
       logical :: is_turning
 
       integer :: j
 
       is_turning = .false.
-      do j = 1, panel%stages
-         is_turning = relative_velocity(impact, panel, j) < 0.0_wp
+      do j = 1, self%panel%stages
+         is_turning = self%problem%relative_velocity(self%panel, j) < 0.0_wp
          if (is_turning) return
       end do
    end function is_turning
@@ -470,7 +469,7 @@ contains
                call end_at_zero(rule, problem%impact, recorded)
             end if
          end if
-         call record(rule, problem%impact, recorded, trajectory)
+         call self%record(recorded, trajectory)
          if (trajectory%status /= contact_separated) then
             trajectory%last = trajectory%final
             call find_peaks(problem, self%start, recorded, self%force_difference, self%before, &
@@ -579,7 +578,7 @@ contains
       !> Error of the one of the sphere alone [-]
       real(wp), intent(out) :: cor_sphere_error
 
-      real(wp) :: impulse, time, alpha_rate, fall, moved, plate, least, part
+      real(wp) :: impulse, time, fall, moved, plate, least, part
 
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact, rule => self%problem%collocator%rule)
@@ -587,7 +586,6 @@ contains
          impulse = impulse_error(self, part)
          fall = slope_at_end(rule, panel, panel%force)
          time = part*abs((panel%force(n) - coarse%force(n - 1))/fall)
-         alpha_rate = self%alpha_rate()
          ! the end is moved to the zero of the force along straight lines: the errors of this in the
          ! impulse and in the velocity of the plate
          moved = panel%force(n)/fall
@@ -598,7 +596,7 @@ contains
          cor_sphere_error = least + (impulse/impact%mass + impact%gravity*time)/impact%velocity
          cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
             *(moved/panel%time(n))**2 + plate_error(self, part) &
-            + (time*(plate_gains(panel, alpha_rate) &
+            + (time*(self%plate_gains() &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          ! near s = 0 F' is zero in both solutions, but at different times

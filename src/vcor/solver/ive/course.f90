@@ -4,11 +4,12 @@
 !> and its companion. `excess` is this over the allowed error, and the next panel may be longer by
 !> the factor excess^(-1/(2 n - 2)) with n stages.
 module vcor_solver_ive_course
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
-   use vcor_solver_ive_panel, only : panel_t, start_t
+   use vcor_solver_ive_panel, only : panel_t, start_t, step_t
    use vcor_solver_ive_problem, only : panel_problem_t
-   use vcor_solver_ive_step, only : step_t
    use vcor_tuning, only : best_time, better, better_power, enough_closings, &
       longest_growth, time_share_continuous, usual_accuracy
    implicit none
@@ -45,8 +46,11 @@ module vcor_solver_ive_course
       !> Whether the contact, or the computation, ends with the panel
       logical :: ends = .false., reaches_end_time = .false.
    contains
+      procedure :: begin
+      procedure :: record
       procedure :: motion_error
       procedure :: alpha_rate
+      procedure :: plate_gains
       procedure :: growth_of
       procedure :: is_best_end
       procedure :: growth_of_step
@@ -55,6 +59,63 @@ module vcor_solver_ive_course
    end type course_t
 
 contains
+
+   !> Set the first node of a trajectory
+   subroutine begin(self, trajectory)
+      class(course_t), intent(in) :: self
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer, parameter :: usual_panels = 8
+
+      associate (rule => self%problem%collocator%rule, impact => self%problem%impact)
+         call trajectory%reserve(usual_panels*rule%stages)
+         trajectory%state(:, 0) = 0.0_wp
+         trajectory%state(col_sphere_velocity, 0) = impact%velocity
+         trajectory%state(col_force, 0) = impact%first_force()
+         trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
+         trajectory%state(col_velocity, 0) = impact%velocity &
+            - trajectory%state(col_plate_velocity, 0)
+         trajectory%share(0) = 0.0_wp
+         trajectory%stages = rule%stages
+         allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))
+         allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
+      end associate
+   end subroutine begin
+
+   !> Add the nodes of a panel to the trajectory
+   subroutine record(self, panel, trajectory)
+      class(course_t), intent(in) :: self
+      type(panel_t), intent(in) :: panel
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer :: n, first, j
+
+      associate (rule => self%problem%collocator%rule, impact => self%problem%impact)
+         n = panel%stages
+         call trajectory%reserve(trajectory%final + n)
+         call trajectory%add_map(panel%map)
+         first = trajectory%final + 1
+         trajectory%final = trajectory%final + n
+         trajectory%steps = trajectory%steps + 1
+         trajectory%share(first:trajectory%final) = rule%weight(1:n) &
+            *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))*panel%force(1:n)
+         do j = 1, n
+            associate (state => trajectory%state(:, first + j - 1))
+               state(col_time) = panel%time(j)
+               state(col_indentation) = panel%indentation(j)
+               state(col_force) = panel%force(j)
+               state(col_impulse) = panel%impulse(j)
+               state(col_sphere) = impact%free_path(panel%time(j)) &
+                  - panel%second_impulse(j)/impact%mass
+               state(col_sphere_velocity) = impact%free_velocity(panel%time(j)) &
+                  - panel%impulse(j)/impact%mass
+               state(col_plate) = state(col_sphere) - panel%indentation(j)
+               state(col_plate_velocity) = self%problem%plate_velocity(panel, j)
+               state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
+            end associate
+         end do
+      end associate
+   end subroutine record
 
    !> Growth over the panel of the difference between solution and companion
    pure function growth_of(self, one, other) result(difference)
@@ -102,6 +163,21 @@ contains
             rate = plate%alpha_rate(panel%time(n), panel%alpha(n))
       end associate
    end function alpha_rate
+
+   !> Rate of the plate's velocity alpha' I at the end of the contact, where F is zero; alpha grows
+   !> about as a power of time or exponentially there
+   pure function plate_gains(self) result(gain)
+      !> The course, its panel the last one of the contact
+      class(course_t), intent(in) :: self
+      !> Rate [m/s2]
+      real(wp) :: gain
+
+      associate (n => self%panel%stages, panel => self%panel, alpha_rate => self%alpha_rate())
+         gain = 0.0_wp
+         if (alpha_rate > 0.0_wp) gain = alpha_rate*panel%impulse(n) &
+            *max(1.0_wp/panel%time(n), alpha_rate/panel%alpha(n))
+      end associate
+   end function plate_gains
 
    !> Whether an end cannot be improved: rounding in the force of stiff internal variables, or an
    !> inherited error, limits the accuracy of its time

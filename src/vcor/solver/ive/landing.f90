@@ -10,9 +10,8 @@ module vcor_solver_ive_landing
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : collocation_t
    use vcor_solver_ive_newton, only : guess, solve, solve_near
-   use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
+   use vcor_solver_ive_panel, only : panel_t, start_t, step_t, step_to
    use vcor_solver_ive_problem, only : panel_problem_t
-   use vcor_solver_ive_step, only : step_t, step_to
    use vcor_tuning, only : landing_share, most_iterations, peak_guess, roughly, &
       share_of_square
    implicit none
@@ -128,7 +127,7 @@ contains
          integer :: stage
 
          do stage = 1, panel%stages
-            velocity(stage) = relative_velocity(problem%impact, panel, stage)
+            velocity(stage) = problem%relative_velocity(panel, stage)
          end do
       end subroutine find_velocity
    end subroutine land_on_largest
@@ -202,7 +201,7 @@ contains
                memory_rate = (memory - old_memory)/correction
             old_memory = memory
             last_correction = correction
-            velocity = relative_velocity(problem%impact, panel, n)
+            velocity = problem%relative_velocity(panel, n)
             if (elastic) then
                ! s = 0: the force of a cone is a square of s, whose zero is lost in rounding
                panel%converged = velocity < 0.0_wp

@@ -8,10 +8,9 @@ module vcor_solver_ive_newton
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, invert, width
    use vcor_numeric_radau_collocation, only : closing, collocation_t
-   use vcor_solver_ive_panel, only : panel_t, start_t
+   use vcor_solver_ive_panel, only : panel_t, start_t, step_of, step_t
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
-   use vcor_solver_ive_step, only : step_of, step_t
    use vcor_tuning, only : farthest_closing, farthest_rebound, most_iterations, &
       newton_close, no_better, noticeable_time, slowest_contraction
    implicit none

@@ -35,8 +35,7 @@ module vcor_solver_ive_problem
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
    use vcor_solver_ive_modes, only : advance_lags, find_response, modes_t
-   use vcor_solver_ive_panel, only : move_to_end, panel_t, start_t
-   use vcor_solver_ive_step, only : step_t
+   use vcor_solver_ive_panel, only : move_to_end, panel_t, start_t, step_t
    use vcor_tuning, only : rounding_of_condition
    implicit none
    private
@@ -69,6 +68,8 @@ module vcor_solver_ive_problem
       procedure :: set_end_drift
       procedure :: second_term
       procedure :: advance
+      procedure :: plate_velocity
+      procedure :: relative_velocity
    end type panel_problem_t
 
    !> The equations of one panel; functions of H are stored as in `panel_map_t`
@@ -638,5 +639,37 @@ contains
       force = self%collocator%second_coefficient*force
       slope = self%collocator%second_coefficient*slope
    end subroutine second_term
+
+   !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I; for a frozen or
+   !> hereditary plate, alpha F - drift + recoil
+   pure function plate_velocity(self, panel, j) result(velocity)
+      class(panel_problem_t), intent(in) :: self
+      type(panel_t), intent(in) :: panel
+      !> Stage, > 0
+      integer, intent(in) :: j
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = panel%alpha(j)*panel%force(j)
+      if (self%impact%plate%drifts()) then
+         velocity = velocity - panel%drift(j) + panel%recoil(j)
+      else
+         velocity = velocity + panel%impulse(j) &
+            *self%impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
+      end if
+   end function plate_velocity
+
+   !> Rate of the indentation at a stage of a panel: s' = v0 + g t - I/m - U'
+   pure function relative_velocity(self, panel, j) result(velocity)
+      class(panel_problem_t), intent(in) :: self
+      type(panel_t), intent(in) :: panel
+      !> Stage, > 0
+      integer, intent(in) :: j
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = self%impact%free_velocity(panel%time(j)) - panel%impulse(j)/self%impact%mass &
+         - self%plate_velocity(panel, j)
+   end function relative_velocity
 
 end module vcor_solver_ive_problem

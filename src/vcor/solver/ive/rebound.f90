@@ -7,17 +7,14 @@
 !> square root of the time since the largest indentation.
 module vcor_solver_ive_rebound
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_separated, refuse_growth, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : closing, linear
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_course, only : course_t, share
    use vcor_solver_ive_newton, only : close_contact, solve, solve_companion
-   use vcor_solver_ive_panel, only : plate_gains
-   use vcor_solver_ive_recording, only : record
-   use vcor_solver_ive_step, only : step_of
-   use vcor_solver_type, only : refuse_growth
+   use vcor_solver_ive_panel, only : step_of
    use vcor_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
       end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, end_slow, &
       expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
@@ -268,7 +265,7 @@ contains
             time_error = abs(panel%condition(n) - coarse%condition(n - 1))/self%start%condition &
                *self%taken
             self%error = self%error + time_error*impact%gravity/impact%velocity
-            self%error(1) = self%error(1) + time_error*(plate_gains(panel, alpha_rate) &
+            self%error(1) = self%error(1) + time_error*(self%plate_gains() &
                + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
                /impact%velocity
          else if (self%rest < self%end_time) then
@@ -386,7 +383,7 @@ contains
       if (self%ends) self%panel%force(self%panel%stages) = 0.0_wp
       if (self%start%time + self%taken >= self%growing_until) self%longest_growing = 0.0_wp
       self%error_sum = self%error_sum + self%error
-      call record(self%problem%collocator%rule, self%problem%impact, self%panel, trajectory)
+      call self%record(self%panel, trajectory)
       trajectory%last = trajectory%final
    end subroutine accept
 

@@ -1,22 +1,17 @@
-!> Recording of the panels of the internal-variable method in a trajectory, and its maxima
-module vcor_solver_ive_recording
-   use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
-      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
-      contact_separated, trajectory_t
+!> Largest indentation and force of the internal-variable method, more accurate than its panels are
+!> between their ends
+module vcor_solver_ive_peaks
+   use vcor_impact_trajectory, only : trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
-   use vcor_numeric_radau_collocation, only : collocation_t
    use vcor_solver_ive_newton, only : guess, improve, solve
-   use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
+   use vcor_solver_ive_panel, only : panel_t, start_t, step_t, step_to
    use vcor_solver_ive_problem, only : panel_problem_t
-   use vcor_solver_ive_step, only : step_t, step_to
    use vcor_tuning, only : force_better, force_unsure, peak_position
    implicit none
    private
 
-   public :: earlier_panel_t
-   public :: begin, record, find_peaks
+   public :: earlier_panel_t, find_peaks
 
    !> The panel before the one being recorded
    type :: earlier_panel_t
@@ -29,60 +24,6 @@ module vcor_solver_ive_recording
    end type earlier_panel_t
 
 contains
-
-   !> Set the first node of a trajectory
-   subroutine begin(rule, impact, trajectory)
-      type(collocation_t), intent(in) :: rule
-      type(impact_t), intent(in) :: impact
-      type(trajectory_t), intent(inout) :: trajectory
-
-      integer, parameter :: usual_panels = 8
-
-      call trajectory%reserve(usual_panels*rule%stages)
-      trajectory%state(:, 0) = 0.0_wp
-      trajectory%state(col_sphere_velocity, 0) = impact%velocity
-      trajectory%state(col_force, 0) = impact%first_force()
-      trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
-      trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
-      trajectory%share(0) = 0.0_wp
-      trajectory%stages = rule%stages
-      allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))
-      allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
-   end subroutine begin
-
-   !> Add the nodes of a panel to the trajectory
-   subroutine record(rule, impact, panel, trajectory)
-      type(collocation_t), intent(in) :: rule
-      type(impact_t), intent(in) :: impact
-      type(panel_t), intent(in) :: panel
-      type(trajectory_t), intent(inout) :: trajectory
-
-      integer :: n, first, j
-
-      n = panel%stages
-      call trajectory%reserve(trajectory%final + n)
-      call trajectory%add_map(panel%map)
-      first = trajectory%final + 1
-      trajectory%final = trajectory%final + n
-      trajectory%steps = trajectory%steps + 1
-      trajectory%share(first:trajectory%final) = rule%weight(1:n) &
-         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))*panel%force(1:n)
-      do j = 1, n
-         associate (state => trajectory%state(:, first + j - 1))
-            state(col_time) = panel%time(j)
-            state(col_indentation) = panel%indentation(j)
-            state(col_force) = panel%force(j)
-            state(col_impulse) = panel%impulse(j)
-            state(col_sphere) = impact%free_path(panel%time(j)) &
-               - panel%second_impulse(j)/impact%mass
-            state(col_sphere_velocity) = impact%free_velocity(panel%time(j)) &
-               - panel%impulse(j)/impact%mass
-            state(col_plate) = state(col_sphere) - panel%indentation(j)
-            state(col_plate_velocity) = plate_velocity(impact, panel, j)
-            state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
-         end associate
-      end do
-   end subroutine record
 
    !> Update the largest indentation and force
    subroutine find_peaks(problem, start, panel, force_difference, before, accuracy, trajectory)
@@ -276,4 +217,4 @@ contains
       last = next
    end subroutine solve_on
 
-end module vcor_solver_ive_recording
+end module vcor_solver_ive_peaks
