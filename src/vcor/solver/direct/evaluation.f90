@@ -1,16 +1,15 @@
-!> Evaluation of a run of product integration: the state at the end of contact, found by
-!> interpolation in the last step, and the shares of the nodes in the impulse
+!> Evaluation of a run on equal steps: the state at the end of contact, found by interpolation in
+!> the last step, the largest values, and the shares of the nodes in the impulse
 module vcor_solver_direct_evaluation
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver_equal_steps, only : parabola
    implicit none
    private
 
-   public :: end_of_contact, end_of_receding_contact, set_shares
+   public :: end_of_contact, end_of_receding_contact, set_shares, find_peaks, parabola
 
 contains
 
@@ -224,5 +223,50 @@ contains
          end do
       end associate
    end subroutine set_shares
+
+   !> Parabola through values at -1, 0 and 1
+   pure function parabola(value, x) result(y)
+      real(wp), intent(in) :: value(-1:1)
+      !> Argument
+      real(wp), intent(in) :: x
+      !> Interpolated value
+      real(wp) :: y
+
+      y = value(0) + 0.5_wp*x*(value(1) - value(-1) + x*(value(1) - 2.0_wp*value(0) + value(-1)))
+   end function parabola
+
+   !> Largest indentation and force, by the parabola through the largest node and its neighbours
+   pure subroutine find_peaks(trajectory)
+      type(trajectory_t), intent(inout) :: trajectory
+
+      call peak(col_indentation, trajectory%max_indentation, trajectory%time_of_max_indentation)
+      call peak(col_force, trajectory%max_force, trajectory%time_of_max_force)
+
+   contains
+
+      !> Peak of one column
+      pure subroutine peak(column, value, time)
+         integer, intent(in) :: column
+         !> Largest value
+         real(wp), intent(out) :: value
+         !> Time of the largest value [s]
+         real(wp), intent(out) :: time
+
+         real(wp) :: y(-1:1), x, bend
+         integer :: i
+
+         i = maxloc(trajectory%state(column, 0:trajectory%last), 1) - 1
+         value = trajectory%state(column, i)
+         time = trajectory%state(col_time, i)
+         ! the last node has another distance
+         if (i < 1 .or. i > trajectory%last - 2) return
+         y = trajectory%state(column, i - 1:i + 1)
+         bend = y(1) - 2.0_wp*y(0) + y(-1)
+         if (.not. bend < 0.0_wp) return
+         x = 0.5_wp*(y(-1) - y(1))/bend
+         value = parabola(y, x)
+         time = time + x*(trajectory%state(col_time, i + 1) - time)
+      end subroutine peak
+   end subroutine find_peaks
 
 end module vcor_solver_direct_evaluation

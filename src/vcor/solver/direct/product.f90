@@ -23,11 +23,11 @@ module vcor_solver_direct_product
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_convolution, only : lengthen, second_term_t
-   use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, set_shares
+   use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, find_peaks, &
+      parabola, set_shares
    use vcor_solver_direct_motion, only : motion_t
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
-   use vcor_solver_equal_steps, only : find_peaks, parabola
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    use vcor_tuning, only : cancelled, enough_steps, first_steps, &
       last_part, layer_reach, least_part, most_for_all, most_for_layers, most_work, share_of_force

@@ -21,7 +21,7 @@ module vcor_solver_paper_march
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_convolution, only : convolution_t, lengthen, second_term_t
-   use vcor_solver_equal_steps, only : find_peaks
+   use vcor_solver_direct_evaluation, only : find_peaks
    use vcor_solver_paper_formulas, only : ab_points, adams_bashforth, damping_limit, &
       first_difference, first_points, kernel_terms, runge_kutta, second_difference, second_points, &
       start_steps
