@@ -10,7 +10,7 @@ module vcor_app_fit
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_fit, only : check_fixed, fit_material, fit_t, moduli_of, samples_t, state_bound, &
       state_fixed, unseen_earlier, unseen_later
-   use vcor_fit_json, only : fit_json, parameter_name, shift_note
+   use vcor_fit_result, only : fit_json, parameter_name, shift_note
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_file, only : write_file, write_stdout

@@ -7,7 +7,7 @@ module vcor_c_api_fit
    use vcor_case_identified, only : material_text
    use vcor_error, only : error_t, error_usage, raise
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
-   use vcor_fit_json, only : fit_json
+   use vcor_fit_result, only : fit_json
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_io_seal, only : is_altered
    use vcor_io_sample_file, only : read_samples, read_samples_text, reading_t

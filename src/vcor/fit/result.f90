@@ -1,17 +1,22 @@
-!> Result of a fit: estimates with standard errors, and what the data cannot determine
+!> Result of a fit: estimates with standard errors, what the data cannot determine, and its JSON
+!> document
 module vcor_fit_result
    use vcor_error, only : error_numerical, error_t, raise
+   use vcor_json, only : array, member, numbers, object
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
    use vcor_fit_samples, only : moduli_of, samples_t
    use vcor_material_type, only : material_t
    use vcor_numeric_lapack, only : dgeqrf, dorgqr
    use vcor_numeric_least_squares, only : covariance, least_squares_t
+   use vcor_text, only : integer_text
+   use vcor_version, only : version
    implicit none
    private
 
    public :: fit_t, estimate_t, state_free, state_fixed, state_bound, unseen_earlier, unseen_later
    public :: judge, set_errors, is_structured, mark_ends
+   public :: fit_json, parameter_name, shift_note
 
    !> State of a parameter: determined by the fit
    integer, parameter :: state_free = 0
@@ -19,6 +24,8 @@ module vcor_fit_result
    integer, parameter :: state_fixed = 1
    !> At the end of its range: the data only limit its distance from there
    integer, parameter :: state_bound = 2
+   !> Their names in a document
+   character(len=*), parameter :: states(0:2) = ['free ', 'fixed', 'bound']
    !> What a parameter depends on beyond the data: relaxation before they begin
    integer, parameter :: unseen_earlier = 1
    !> Relaxation after they end
@@ -304,5 +311,63 @@ contains
       change = log(10.0_wp)*(moduli(1) - moduli(2))/(2.0_wp*step)
       if (change <= flat*moduli(2)) change = 0.0_wp
    end function fall
+
+   !> Name of a parameter as a key of &material, with the index of its term in a series
+   pure function parameter_name(fit, i) result(name)
+      type(fit_t), intent(in) :: fit
+      integer, intent(in) :: i
+      character(len=:), allocatable :: name
+
+      name = trim(fit%parameters(i)%name)
+      if (fit%data%model == 'prony' .and. i > 1) name = name//'('//integer_text(i/2)//')'
+   end function parameter_name
+
+   !> Note that the standard errors of a fit to a master curve omit the errors of the shift factors:
+   !> these move all points of a temperature together, which no misfit shows
+   pure function shift_note(samples) result(text)
+      type(samples_t), intent(in) :: samples
+      !> The note; empty for data without a shift
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (.not. allocated(samples%keys)) return
+      if (index(samples%keys, ' shift =') > 0) text = 'the standard errors leave out those of ' &
+         //'the shift factors: vcor identify fits moduli and shift at once'
+   end function shift_note
+
+   !> The document: parameters in SI units, covariance, correlation, misfit and band of the data
+   pure function fit_json(fit, samples, group) result(text)
+      type(fit_t), intent(in) :: fit
+      type(samples_t), intent(in) :: samples
+      !> The material as a &material group
+      character(len=*), intent(in) :: group
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: list, covariance, correlation
+      integer :: i
+
+      list = ''
+      covariance = ''
+      correlation = ''
+      do i = 1, size(fit%parameters)
+         associate (one => fit%parameters(i))
+            list = list//object(member('name', parameter_name(fit, i))//member('unit', one%unit) &
+               //member('value', one%value)//member('standard_error', one%error) &
+               //member('state', trim(states(one%state))))
+            correlation = correlation//array(numbers(fit%correlation(:, i)))
+            covariance = covariance//array(numbers(fit%correlation(:, i)*(one%error &
+               *fit%parameters%error)))
+         end associate
+      end do
+      text = object(member('program', 'vcor')//member('version', version) &
+         //member('name', fit%data%name)//member('model', fit%data%model) &
+         //array(list, 'parameters')//array(covariance, 'covariance') &
+         //array(correlation, 'correlation')//member('rms_misfit', fit%rms) &
+         //member('largest_misfit', fit%largest)//member('largest_misfit_at', fit%largest_at) &
+         //member('follows', .not. fit%structured)//member('note', shift_note(samples)) &
+         //array(numbers([samples%first_time(), samples%last_time()]), 'band') &
+         //member('group', group))
+      text = text(:len(text) - 2)//new_line('a')
+   end function fit_json
 
 end module vcor_fit_result
