@@ -10,7 +10,7 @@ module vcor_app_cli
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models
    use vcor_material_moduli, only : time_range_t
-   use vcor_numeric_crc, only : crc32
+   use vcor_io_seal, only : crc32
    use vcor_sweep_part, only : most_threads
    use vcor_sweep_quantity, only : quantity_names
    use vcor_text, only : control_in, integer_text, name_flaw, printable

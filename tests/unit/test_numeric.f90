@@ -4,7 +4,7 @@ program test_numeric
    use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_numeric_crc, only : crc32
+   use vcor_io_seal, only : crc32
    use vcor_solver_convolution, only : dot
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, &
       & legendre, radau_nodes

@@ -30,7 +30,7 @@ module vcor_io_checkpoint
    use vcor_io_results, only : axis_column, quantity_column
    use vcor_io_table, only : add_column, add_dimension, column_of, column_t, new_table, table_t
    use vcor_kinds, only : wp
-   use vcor_numeric_crc, only : crc32
+   use vcor_io_seal, only : crc32
    use vcor_sweep_quantity, only : point_pending, quantity_t, summary_t
    use vcor_text, only : integer_text, printable
    implicit none

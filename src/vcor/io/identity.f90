@@ -7,7 +7,7 @@ module vcor_io_identity
    use vcor_text, only : integer_text, shortened
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
-   use vcor_numeric_crc, only : crc32
+   use vcor_io_seal, only : crc32
    use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
    use vcor_sweep_part, only : new_part, part_t
