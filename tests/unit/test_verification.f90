@@ -41,10 +41,9 @@ program test_verification
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_verify, only : build_law, evaluate_law, law_count
-   use vcor_verify_law, only : judge, law_t, row_t, verdict_t
+   use vcor_verify_law, only : elastic, judge, law_t, row_t, sls, strike_t, verdict_t
    use vcor_verify_methods, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
       compare, comparison_t, is_honest, judge_ends, judge_numbers
-   use vcor_verify_strike, only : elastic, sls, strike_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite
    use vcor_test_cases, only : success

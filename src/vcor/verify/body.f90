@@ -5,8 +5,7 @@ module vcor_verify_body
    use vcor_impact_plate, only : waves_body, waves_constant, waves_hereditary
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
-   use vcor_verify_law, only : law_t
-   use vcor_verify_strike, only : density, elastic, hertz_duration, sls, strike_t, time_scale, &
+   use vcor_verify_law, only : density, elastic, hertz_duration, law_t, sls, strike_t, time_scale, &
       zener_plate
    implicit none
    private

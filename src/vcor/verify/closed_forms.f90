@@ -5,8 +5,8 @@ module vcor_verify_closed_forms
    use vcor_impact_plate, only : waves_constant, waves_relaxing
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
-   use vcor_verify_law, only : law_t, others_follow
-   use vcor_verify_strike, only : elastic, hertz_duration, sls, strike_t, time_scale, zener_plate
+   use vcor_verify_law, only : elastic, hertz_duration, law_t, others_follow, sls, strike_t, &
+      time_scale, zener_plate
    implicit none
    private
 

@@ -3,8 +3,7 @@ module vcor_verify_golden
    use vcor_impact_plate, only : waves_frozen, waves_hereditary, waves_none, waves_relaxing
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
-   use vcor_verify_law, only : law_t, others_follow
-   use vcor_verify_strike, only : elastic, sls, strike_t
+   use vcor_verify_law, only : elastic, law_t, others_follow, sls, strike_t
    implicit none
    private
 

@@ -28,8 +28,7 @@ module vcor_verify_kelvin_voigt
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : waves_constant
    use vcor_kinds, only : wp
-   use vcor_verify_law, only : law_t
-   use vcor_verify_strike, only : kelvin_voigt, strike_t, time_scale, zener_plate
+   use vcor_verify_law, only : kelvin_voigt, law_t, strike_t, time_scale, zener_plate
    implicit none
    private
 
