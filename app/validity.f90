@@ -9,7 +9,7 @@ module vcor_app_validity
    use vcor_case_grid, only : grid_t
    use vcor_case_identified, only : find_reliance, reliance_t
    use vcor_case_problem, only : material_of_case
-   use vcor_case_plausibility, only : implausible_numbers, note_length
+   use vcor_case_checks, only : implausible_numbers, note_length
    use vcor_case_unread, only : why_unread
    use vcor_constants, only : pi
    use vcor_error, only : error_t
