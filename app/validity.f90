@@ -11,14 +11,13 @@ module vcor_app_validity
    use vcor_case_problem, only : material_of_case
    use vcor_case_checks, only : implausible_numbers, note_length
    use vcor_case_unread, only : why_unread
-   use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_validity, only : judged, level_caution, level_good, level_of, level_outside, &
       levels, surroundings_t, thresholds
    use vcor_io_data_file, only : data_file
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_type, only : material_t
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_number, only : real_text

@@ -1,7 +1,6 @@
 !> Impacts for the tests: from case files, from a few numbers, at random
 module vcor_test_cases
    use, intrinsic :: iso_fortran_env, only : int64
-   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
@@ -9,7 +8,7 @@ module vcor_test_cases
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_io_case_reader, only : read_case
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_prony, only : new_rigid, prony_t
    use vcor_material_type, only : material_t
    use vcor_solver_ive, only : ive_t, new_ive

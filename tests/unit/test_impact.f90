@@ -1,7 +1,6 @@
 !> Contact modulus, plate, impact, trajectory and outcome
 program test_impact
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
-   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_law, only : contact_law_t, new_contact_law
@@ -11,7 +10,7 @@ program test_impact
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate_velocity, &
       col_sphere, col_sphere_velocity, col_time, col_velocity, columns, contact_lasting, &
       contact_separated, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_power_law, only : new_power_law, power_law_t

@@ -1,9 +1,8 @@
 !> Quadrature, scalar product, linear systems, collocation
 program test_numeric
    use, intrinsic :: iso_fortran_env, only : int32, int8
-   use vcor_constants, only : pi
    use vcor_error, only : error_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_io_seal, only : crc32
    use vcor_solver_convolution, only : dot
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, &

@@ -1,12 +1,11 @@
 !> Contacts that grow again, spring by spring, beside the numbers of tests/reference/regrowth.py
 program test_springs
-   use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, prony_t
    use vcor_material_type, only : material_t

@@ -21,7 +21,6 @@ module vcor_case_problem
    use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, keys_of, &
       last_row, list_key
    use vcor_case_printed, only : value_text
-   use vcor_constants, only : pi, standard_gravity
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
@@ -32,7 +31,7 @@ module vcor_case_problem
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, standard_gravity, wp
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of
    use vcor_material_type, only : density, parameter_t
    use vcor_material_shift, only : shift_parameters

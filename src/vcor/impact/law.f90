@@ -15,9 +15,8 @@
 !> negative, so u is continued as an odd function, u(s) = s |s|^(n-1).
 module vcor_impact_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 

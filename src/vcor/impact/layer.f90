@@ -16,8 +16,7 @@
 !>     tb - ta = tanh((be - al) H/2) (1 - ta tb),   be - al = (q - p)/(al + be)
 module vcor_impact_layer
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor_constants, only : pi
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : gauss_nodes
    implicit none

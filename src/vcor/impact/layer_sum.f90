@@ -18,9 +18,8 @@
 !> several radii in the band and interpolated between them. Windows and bands are steps of geometric
 !> ladders, so that the sum of an impact does not depend on the impacts before it.
 module vcor_impact_layer_sum
-   use vcor_constants, only : pi
    use vcor_impact_layer, only : layer_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_lapack, only : dgeqp3, dormqr, dtrtrs
    implicit none

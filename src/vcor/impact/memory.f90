@@ -11,8 +11,7 @@
 !> with w(l) = -(A/pi) Im 1/sqrt(Q_b(-l + i0)).
 module vcor_impact_memory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
-   use vcor_constants, only : pi
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_spectrum, only : rule_for_spectrum, transform_t
    use vcor_material_type, only : material_t

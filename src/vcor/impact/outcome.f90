@@ -2,12 +2,11 @@
 module vcor_impact_outcome
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_fortran_env, only : int64
-   use vcor_constants, only : pi
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_impulse, col_indentation, &
       col_plate_velocity, col_sphere, col_time, col_velocity, contact_resting, contact_separated, &
       contact_unknown, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 

@@ -1,10 +1,9 @@
 !> Time course of an impact, as every solver returns it
 module vcor_impact_trajectory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor_constants, only : unset
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    implicit none
    private
 

@@ -4,11 +4,10 @@
 !> Hertzian, on a half space, in a thin and wide plate, and without losses that are not computed.
 module vcor_impact_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
-   use vcor_constants, only : pi, standard_gravity
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_plate, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, standard_gravity, wp
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : gauss_nodes
    implicit none

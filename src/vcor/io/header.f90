@@ -4,9 +4,8 @@
 !> as other fitting programs write them, or in comments `# name [unit] ...` before the header, as
 !> vcor writes them.
 module vcor_io_header
-   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_io_columns, only : most_columns, split
    use vcor_text, only : lower, shortened
    use vcor_words, only : contains_word, join_words, nearest_name

@@ -2,9 +2,8 @@
 !> scaled complementary error function CERF(x) = exp(x^2) erfc(x), the intrinsic erfc_scaled
 module vcor_material_cerf
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
-   use vcor_constants, only : pi, sqrt_pi
    use vcor_error, only : error_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, sqrt_pi, wp
    use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio, &
       relaxing_modulus
    use vcor_number, only : positive

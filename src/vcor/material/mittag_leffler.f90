@@ -2,9 +2,8 @@
 !> E(t) = E_0 + E_1 E_a(-(t/tau)^a). For a = 1/2 it is `cerf`, for a = 1 the standard linear solid
 module vcor_material_mittag_leffler
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
-   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio, &
       relaxing_modulus
    use vcor_number, only : interval_t, positive

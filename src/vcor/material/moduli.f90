@@ -2,9 +2,8 @@
 module vcor_material_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
       ieee_quiet_nan, ieee_value
-   use vcor_constants, only : pi
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_type, only : material_t
    use vcor_number, only : log_spacing, real_text, spaced
    implicit none

@@ -2,9 +2,8 @@
 !> fitted to BUTYL B252: E(t) = E_0 + C t^-a/Gamma(1 - a)
 module vcor_material_power_law
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
-   use vcor_constants, only : unset
    use vcor_error, only : error_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio
    use vcor_number, only : between_0_and_1, positive
    use vcor_material_spectrum, only : fractional_t

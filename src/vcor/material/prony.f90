@@ -3,9 +3,8 @@
 !> the standard linear solid one; a rigid body is an elastic solid of infinite modulus
 module vcor_material_prony
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
-   use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_number, only : not_negative, positive
    use vcor_material_type, only : check_values, equilibrium_modulus, linear, material_t, &

@@ -10,9 +10,8 @@
 !> M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701,
 !> doi:10.1021/ja01619a008. The ratio of densities in their b_T is left out.
 module vcor_material_shift
-   use vcor_constants, only : gas_constant
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : gas_constant, wp
    use vcor_material_type, only : parameter_t
    use vcor_number, only : positive
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece

@@ -14,8 +14,7 @@
 !> peak at y_p so narrow that its poles y_p +- i d lie inside the strip; c = 1 - 2 d/pi moves them
 !> to the edge. Rates below all nodes are lumped into a constant, those above them into a dashpot.
 module vcor_material_spectrum
-   use vcor_constants, only : pi, unset
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
    use vcor_tuning, only : above_peak, below_peak, farther_above, farther_below, &

@@ -1,8 +1,7 @@
 !> Material given by points of its relaxation modulus, interpolated in logarithms
 module vcor_material_table
-   use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    use vcor_material_exponential_fit, only : fit_exponentials
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t, parameter_t, poisson_ratio

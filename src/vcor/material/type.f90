@@ -1,9 +1,8 @@
 !> A linear viscoelastic material: all that solvers use of it, and the parameters of its models
 module vcor_material_type
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
-   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_number, only : interval_t, interval_text, is_within, not_negative, positive, real_text
    implicit none

@@ -14,8 +14,7 @@
 !> most exp(-a K'/2) for any t.
 module vcor_numeric_elliptic
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor_constants, only : pi
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 

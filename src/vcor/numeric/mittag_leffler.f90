@@ -20,8 +20,7 @@
 !> The bracket is u (w^(a-1) - 1)/((w^a + u)(w + u)), in which w^(a-1) - 1, of the order of 1 - a,
 !> is computed without a difference.
 module vcor_numeric_mittag_leffler
-   use vcor_constants, only : pi
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 

@@ -1,8 +1,7 @@
 !> Quadrature rules for integrals of relaxation moduli; Legendre polynomials, nodes of Gauss and
 !> Radau
 module vcor_numeric_quadrature
-   use vcor_constants, only : pi
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 

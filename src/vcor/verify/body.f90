@@ -1,9 +1,8 @@
 !> Laws of the verification table for plates by elastodynamics, waves = 'body': their limits
 module vcor_verify_body
-   use vcor_constants, only : pi
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : waves_body, waves_constant, waves_hereditary
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material, only : material_data_t
    use vcor_verify_law, only : density, elastic, hertz_duration, law_t, sls, strike_t, time_scale, &
       zener_plate

@@ -10,7 +10,6 @@
 !> impact that the solvers see.
 module vcor_verify_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
-   use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_series
    use vcor_impact_law, only : contact_law_t
@@ -18,7 +17,7 @@ module vcor_verify_law
    use vcor_impact_plate, only : new_plate, plate_t, waves_body, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_separated
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_solver, only : solve_impact, solver_settings_t
    use vcor_sweep_quantity, only : quantity_value

@@ -19,8 +19,7 @@
 !> step, their coefficients would have independent errors, five digits of 16; this way they belong
 !> to a polynomial that differs from x(y) by rounding.
 module vcor_numeric_radau_settling
-   use vcor_constants, only : pi
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_numeric_quadrature, only : gauss_nodes, legendre
    implicit none
    private

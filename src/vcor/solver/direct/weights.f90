@@ -1,10 +1,9 @@
 !> Weights W_i of the sums over the past in product integration, F_n = sum_j W_{n-j} du_j with
 !> du_j = u_j - u_{j-1}: u' is linear over each step and the kernel times u' is integrated exactly
 module vcor_solver_direct_weights
-   use vcor_constants, only : pi
    use vcor_impact_plate, only : plate_t
    use vcor_impact_problem, only : impact_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    use vcor_solver_convolution, only : convolution_t
    use vcor_tuning, only : aliased, near => near_kernel

@@ -16,9 +16,8 @@
 !> is z = -1 with sigma = 551/45, delta2 = 4592/45 and, for a constant kernel, K = k_0/2:
 !> dt (3/2) alpha k_0 sqrt(s) < 0.0064, while the Adams-Bashforth formula alone allows 0.163.
 module vcor_solver_paper_formulas
-   use vcor_constants, only : pi
    use vcor_impact_law, only : contact_law_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 
