@@ -6,8 +6,7 @@ module vcor_fit
    use vcor_number, only : interval_text, is_within
    use vcor_text, only : integer_text, printable
    use vcor_words, only : join_words
-   use vcor_fit_law_problem, only : stated_parameters
-   use vcor_fit_law, only : fit_law
+   use vcor_fit_law, only : fit_law, stated_parameters
    use vcor_fit_result, only : estimate_t, fit_t, state_bound, state_fixed, state_free, &
       unseen_earlier, unseen_later
    use vcor_fit_samples, only : moduli_of, samples_t

@@ -3,8 +3,8 @@
 !> First non-negative least squares finds the moduli of rates on a fine logarithmic grid; few of
 !> them are not zero. A relaxation time between two rates of the grid appears at both, so neighbours
 !> are merged. Then moduli and rates are refined together, from two starts: the merged spectrum, and
-!> rates in equal logarithmic steps. This is a least-squares problem in their logarithms, which keeps
-!> all of them positive.
+!> rates in equal logarithmic steps: a least-squares problem in their logarithms, which keeps all of
+!> them positive.
 !>
 !> As many terms as the data support: terms are added until the largest misfit is below the accuracy
 !> of any data, or while they reduce the Bayesian information criterion m ln(S/m) + p ln m of m
@@ -67,8 +67,8 @@ module vcor_fit_prony
    !> Replaces a modulus of 0 in logarithms [Pa]
    real(wp), parameter :: least_modulus = 1.0e-200_wp
 
-   !> A Prony series and its misfit to samples; the unknowns of the problem are the logarithms of the
-   !> equilibrium modulus, if it is free, of the moduli and of the rates
+   !> A Prony series and its misfit to samples; the unknowns of the problem are the logarithms of
+   !> the equilibrium modulus, if it is free, of the moduli and of the rates
    type, extends(least_squares_t) :: series_t
       type(samples_t) :: samples
       !> Their moduli as one list [Pa]
