@@ -314,6 +314,11 @@ def test_another_case_is_not_replaced_in_silence(vcor):
     assert "replaced: './case.h5'" in vcor.succeeds("run", "case.nml")
     assert "replaced" not in vcor.succeeds("run", "case.nml")
     assert "replaced: './case.h5'" in vcor.succeeds("run", "case.nml", "--set", "rubber.beta=900")
+    # a key that only one of the two gives
+    given = ["--set", "rubber.beta=900", "--set", "solver.accuracy=1e-9"]
+    assert "it lacks 'accuracy = 1.0e-9'" in vcor.succeeds("run", "case.nml", *given)
+    done = vcor.succeeds("run", "case.nml", "--set", "rubber.beta=900")
+    assert "it has 'accuracy = 1.0e-9', which this one lacks" in done
     (vcor.folder / "case.h5").write_text("something else")
     assert "replaced: './case.h5' is not a file" in vcor.succeeds("run", "case.nml")
 

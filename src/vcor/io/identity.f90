@@ -209,6 +209,7 @@ contains
       character(len=*), intent(in) :: expected
       !> Text for an error, or for a note that the file is replaced
       character(len=:), allocatable :: text
+      character(len=:), allocatable :: one, other
       integer :: i, start
 
       start = 1
@@ -216,7 +217,15 @@ contains
          if (found(i:i) /= expected(i:i)) exit
          if (found(i:i) == new_line('a')) start = i + 1
       end do
-      text = "it has '"//line_at(found)//"', this one '"//line_at(expected)//"'"
+      one = line_at(found)
+      other = line_at(expected)
+      if (one(:index(one, '=')) == other(:index(other, '=')) .and. index(one, '=') > 0) then
+         text = "it has '"//one//"', this one '"//other//"'"
+      else if (index(expected(min(start, len(expected) + 1):), one) > 0) then
+         text = "it lacks '"//other//"'"
+      else
+         text = "it has '"//one//"', which this one lacks"
+      end if
 
    contains
 
