@@ -1,9 +1,8 @@
 !> Contact modulus E'(t) of two bodies, Eq. (1) of Green's paper
 module vcor_impact_contact
-   use vcor_constants, only : unset
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_pair, only : new_signed_fit, signed_fit_t, sum_beside_elastic
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
    use vcor_material_in_series, only : new_in_series
