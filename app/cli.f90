@@ -12,7 +12,6 @@ module vcor_app_cli
    use vcor_material_moduli, only : time_range_t
    use vcor_io_seal, only : crc32
    use vcor_sweep_part, only : most_threads
-   use vcor_sweep_quantity, only : quantity_names
    use vcor_text, only : control_in, integer_text, name_flaw, printable
    use vcor_words, only : contains_word, join_words, suggestion
    implicit none
@@ -247,7 +246,7 @@ contains
       case ('--to')
          call read_positive(option, value, request%range%last, error)
       case ('--print')
-         call add_names(value, request, error)
+         call add_names(value, request)
       case ('--json')
          call read_name(option, value, request%json, error)
       case ('--shear')
@@ -410,28 +409,18 @@ contains
       call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
    end subroutine read_shard
 
-   !> Read the names of --print
-   subroutine add_names(list, request, error)
+   !> Read the names of --print, which are checked with the case, as they may be swept parameters
+   subroutine add_names(list, request)
       !> Names separated by commas
       character(len=*), intent(in) :: list
       type(request_t), intent(inout) :: request
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: name
       integer :: first, last
 
       first = 1
       do while (first <= len(list) + 1)
          last = first + index(list(first:)//',', ',') - 2
-         name = trim(adjustl(list(first:last)))
-         ! a name with a dot is a swept parameter, which is checked with the case
-         if (index(name, '.') == 0 .and. .not. contains_word(quantity_names(), name)) then
-            call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
-               //suggestion(name, quantity_names()))
-            return
-         end if
-         call append(request%names, name)
+         call append(request%names, trim(adjustl(list(first:last))))
          first = last + 2
       end do
    end subroutine add_names

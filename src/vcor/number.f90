@@ -107,7 +107,7 @@ contains
    pure function bound_text(bound) result(text)
       real(wp), intent(in) :: bound
       character(len=:), allocatable :: text
-      real(wp), parameter :: whole_below = 1.0e6_wp
+      real(wp), parameter :: whole_below = 1.0e9_wp
 
       text = real_text(bound)
       if (abs(bound) >= whole_below) return

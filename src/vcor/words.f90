@@ -128,6 +128,7 @@ contains
    end function nearest_name
 
    !> Whether a name is the beginning of a part of a known one, such as thickness of half_thickness
+   !> or velocity of impact.velocity
    pure function is_beginning(name, word) result(yes)
       !> The unknown name, any case
       character(len=*), intent(in) :: name
@@ -136,7 +137,8 @@ contains
       logical :: yes
 
       yes = len_trim(name) >= shortest_beginning
-      if (yes) yes = index("_"//lower(word), "_"//lower(trim(name))) > 0
+      if (yes) yes = index("_"//lower(word), "_"//lower(trim(name))) > 0 &
+         .or. index(lower(word), "."//lower(trim(name))) > 0
    end function is_beginning
 
    !> Smallest number of letters to insert, delete, change, or swap with a neighbour that turns one

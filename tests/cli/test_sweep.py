@@ -86,7 +86,7 @@ REFUSED = {
     "no points": (
         ["parameter = 'impact.velocity'", "start = 1", "stop = 2", "count = 0"],
         4,
-        ["found 0", ">= 1"],
+        ["found 0", "in [1, 100000000]"],
     ),
     "half a count": (
         ["parameter = 'impact.velocity'", "start = 1", "stop = 2", "count = 2.5"],
@@ -95,7 +95,18 @@ REFUSED = {
     ),
     "too many": (
         ["parameter = 'impact.velocity'", "start = 1", "stop = 2", "count = 200000000"],
-        1,
+        4,
+        ["found 200000000", "in [1, 100000000]"],
+    ),
+    "beyond all whole numbers": (
+        ["parameter = 'impact.velocity'", "start = 1", "stop = 2", "count = 20000000000"],
+        4,
+        ["found '20000000000'", "in [1, 100000000]"],
+    ),
+    "too many of two": (
+        ["parameter = 'impact.velocity', values = 1, 2 / &sweep", "parameter = 'sphere.radius'",
+         "start = 1", "stop = 2", "count = 60000000"],
+        2,
         ["points", "at most 100000000"],
     ),
     "spacing": (

@@ -19,7 +19,10 @@ module vcor_case_catalogue
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
       list_key
    public :: find_group, find_key, first_row, key_row, last_row, row_for_model
-   public :: kind_name, range_text, wanted, keys_of, group_names, described_keys
+   public :: kind_name, range_text, wanted, keys_of, group_names, described_keys, most_points
+
+   !> Largest number of points of a grid
+   integer, parameter :: most_points = 100000000
 
    !> Kinds of values: a real number
    integer, parameter :: real_key = 1
@@ -78,7 +81,7 @@ module vcor_case_catalogue
    type(interval_t), parameter :: accuracy_range = interval_t(lower=finest_accuracy, &
       upper=coarsest_accuracy)
    type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
-   type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
+   type(interval_t), parameter :: of_a_grid = interval_t(lower=1.0_wp, upper=real(most_points, wp))
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
 
    !> The groups, in the order in which they are printed
@@ -227,7 +230,7 @@ module vcor_case_catalogue
       key_t("sweep", "values", list_key, "Values; or give start, stop and count"), &
       key_t("sweep", "start", real_key, "First value"), &
       key_t("sweep", "stop", real_key, "Last value"), &
-      key_t("sweep", "count", integer_key, "Number of values", range=at_least_one), &
+      key_t("sweep", "count", integer_key, "Number of values", range=of_a_grid), &
       key_t("sweep", "spacing", text_key, "Equal steps of the value or of its logarithm", &
          choices="linear log", default="linear"), &
       !

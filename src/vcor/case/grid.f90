@@ -8,7 +8,7 @@ module vcor_case_grid
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve
    use vcor_case_case, only : address_t, case_t, operator(==)
-   use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
+   use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, most_points, real_key, &
       row_for_model
    use vcor_number, only : log_spacing, real_text, spaced
    use vcor_text, only : integer_text, link_name, shortened
@@ -19,8 +19,6 @@ module vcor_case_grid
 
    public :: axis_t, grid_t, new_grid
 
-   !> Largest number of points of a grid
-   integer, parameter :: most_points = 100000000
    !> Largest number of parameters: each is a dimension in the HDF5 file, which has at most 32
    integer, parameter :: most_axes = 32
 
