@@ -61,6 +61,9 @@ contains
       case default
          text = command_page(page_of(topic))
          if (text == "") text = words_page(topic)
+         ! NAME.KEY of a material, as the messages about a case have it
+         if (text == "" .and. index(topic, ".") > 1) &
+            text = words_page("material"//topic(index(topic, ".", back=.true.):))
          if (text /= "") return
          if (missing_package(topic) /= "") then
             call raise(error, error_usage, missing_package(topic))

@@ -110,8 +110,8 @@ contains
 
       word = ""
       if (len_trim(name) == 0 .or. len_trim(name) > longest_name) return
-      ! one error in a short name, one per three letters in a long one
-      most = max(1, (len_trim(name) + 1)/3)
+      ! one error in a short name, one per three letters in a long one, none in a single letter
+      most = min(max(1, (len_trim(name) + 1)/3), len_trim(name) - 1)
       least = most + 1
       first = 1
       do while (first <= len_trim(known))

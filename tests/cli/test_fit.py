@@ -311,7 +311,7 @@ BAD = {
     "missing number": ("1,5\n2,\n", 2, "''"),
     "missing column": ("1,5\n2\n", 2, "1 column"),
     "four columns": ("1,2,3,4\n2,3,4,5\n", 1, "4 columns"),
-    "header too short": ("t\n1,5\n2,4\n", 2, "header has 1"),
+    "header too short": ("t\n1,5\n2,4\n", 2, "found 2 columns, but the header has 1"),
     "binary": ("t,E\n1,5\n2,\x004\n", 3, "control character"),
     "decimals mixed": ("t;E\n1,5;5\n2.5;4\n", 3, ["decimal commas", "decimal points"]),
     "decimal commas between commas": ("t,E\n1,5,5\n", 2, ["3 columns", "semicolons"]),

@@ -86,6 +86,7 @@ def test_unknown_topic(vcor, topic, nearest):
     [
         ("velocity", ["impact"], ["velocity"]),
         ("beta", ["material"], ["beta", "beta"]),
+        ("rubber.beta", ["material"], ["beta", "beta"]),
         ("material", None, None),
         ("plate.material", ["plate"], ["material"]),
         ("power_law", ["material"], ["model", "poisson_ratio", "equilibrium_modulus", "coefficient", "exponent", "modulus_kind", "valid_from", "valid_to", "shift", "reference_temperature", "wlf_c1", "wlf_c2", "activation_energy", "shift_file", "vertical_shift", "valid_temperature_from", "valid_temperature_to"]),

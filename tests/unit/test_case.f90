@@ -577,6 +577,10 @@ contains
       call check_text(nearest_name("RADUIS", "radius mass material"), "radius", &
          & "nearest in upper case")
       call check_text(nearest_name("x", "radius mass"), "", "nothing is near")
+      call check_text(nearest_name("x", "s a e"), "", "no other letter is near")
+      call check_text(nearest_name("E", "s a e"), "e", "the same letter is")
+      call check_text(nearest_name("velocity", "validity impact.velocity"), "impact.velocity", &
+         & "near without its group")
       call check_text(nearest_name("equil", "density equilibrium_modulus"), &
          & "equilibrium_modulus", "a beginning")
       call check_text(quoted("it's"), "'it''s'", "quotes")

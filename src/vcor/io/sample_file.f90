@@ -414,9 +414,8 @@ contains
       if (header%lines > 0) head = name//":"//integer_text(header%line)
       if (columns > most_columns .or. columns < 2 &
          .or. (header%lines > 0 .and. columns /= header%count)) then
-         call raise(error, error_input, place//": found "//columns_text(columns) &
-            //", expected 2, a time and a modulus, or 3, a frequency, a storage and a " &
-            //"loss modulus"//expected_of(header, columns))
+         call raise(error, error_input, place//": found "//columns_text(columns)//", " &
+            //expected_of(header, columns))
          return
       end if
       plan%columns = columns
@@ -614,17 +613,16 @@ contains
       if (columns /= 1) text = text//"s"
    end function columns_text
 
-   !> Message about a header with another number of columns
+   !> What is expected of the number of columns, by the header if there is one
    pure function expected_of(header, columns) result(text)
       type(header_t), intent(in) :: header
       !> Number of columns of the first line of numbers
       integer, intent(in) :: columns
-      !> In words; may be empty
       character(len=:), allocatable :: text
 
-      text = ""
-      if (header%lines == 0) return
-      text = "; the header has "//integer_text(header%count)
+      text = "expected 2, a time and a modulus, or 3, a frequency, a storage and a loss modulus"
+      if (header%lines == 0 .or. columns == header%count) return
+      text = "but the header has "//integer_text(header%count)
       if (columns > header%count .and. columns <= 2*header%count) text = text//" (with decimal " &
          //"commas expected semicolons or tabs between them)"
    end function expected_of
