@@ -108,9 +108,9 @@ module vcor_tuning
    real(wp), parameter :: layer_reach = 3.0e-4_wp ! tested
    !> Highest accuracy used internally on a layer: its oscillations need not be resolved
    real(wp), parameter :: layer_accuracy = 1.0e-7_wp ! tested
-   !> Error of the motion over the misfit of echoes, measured; largest for a soft elastic layer that
-   !> is as thick as the footprint is wide
-   real(wp), parameter :: error_of_echo = 20.0_wp ! tested
+   !> Error of the impulse over its misfit on a layer, measured against sums with twice the rates:
+   !> about 3 pi^2, as the force answers a change of the motion
+   real(wp), parameter :: error_of_motion = 30.0_wp ! tested
    !> Error of the velocity of a layer's face at the end over its misfit, measured between sums with
    !> other rates; largest where the force ends as s^1.5
    real(wp), parameter :: error_of_layer = 1.0e3_wp ! tested

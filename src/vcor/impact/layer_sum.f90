@@ -34,8 +34,8 @@ module vcor_impact_layer_sum
 
    !> Misfits of C as an impact feels them [m/N]
    type :: layer_misfit_t
-      !> Of the motion: of all, and of echoes alone
-      real(wp) :: motion = 0.0_wp, echo = 0.0_wp
+      !> Of the motion
+      real(wp) :: motion = 0.0_wp
       !> Of the velocity, at an end where the force is smooth, and where it is a power of the time
       !> left
       real(wp) :: smooth_end = 0.0_wp, power_end = 0.0_wp
@@ -57,9 +57,8 @@ module vcor_impact_layer_sum
       !> Largest misfits of C at the radii, weighted for the motion and for the velocity, times the
       !> radius [m2/N]
       real(wp) :: misfit(radii) = 0.0_wp, misfit_of_rate(radii) = 0.0_wp
-      !> The same for echoes beyond the equidistant rates; for the velocity with all misfits up to
-      !> them
-      real(wp) :: echo(radii) = 0.0_wp, echo_of_rate(radii) = 0.0_wp
+      !> The latter for echoes beyond the equidistant rates, and all misfits up to them
+      real(wp) :: echo_of_rate(radii) = 0.0_wp
    contains
       !> Whether the sums are for a given footprint and window
       procedure :: holds
@@ -222,7 +221,6 @@ contains
                /(1.0_wp + size_of_force(:points)**(self%start + 1.0_wp)))
             self%misfit_of_rate(j) = max(weight_of_far*abs(left(size(all), j)), &
                maxval(all_left/(1.0_wp + size_of_force**self%start)))
-            self%echo(j) = maxval(echoes/(1.0_wp + size_beyond**(self%start + 1.0_wp)))
             self%echo_of_rate(j) = max(maxval(echoes/(1.0_wp + size_beyond**self%start)), &
                maxval(all_left(:grid%near) &
                /(1.0_wp + size_of_force(:grid%near)**self%start)))
@@ -309,8 +307,8 @@ contains
       end if
       c = matmul(self%coefficient, weight/(sum(weight)*footprint))
       i = minloc(abs(distance), 1)
-      misfit = layer_misfit_t(self%misfit(i)/footprint, self%echo(i)/footprint, &
-         self%echo_of_rate(i)/footprint, self%misfit_of_rate(i)/footprint)
+      misfit = layer_misfit_t(self%misfit(i)/footprint, self%echo_of_rate(i)/footprint, &
+         self%misfit_of_rate(i)/footprint)
       terms%rates = rate/self%window
       terms%pair_rates = self%pair_rate/self%window
       terms%moduli = c(:slow)

@@ -103,6 +103,7 @@ module vcor_impact_trajectory
       procedure :: misses_by_far
       procedure :: sample
       procedure :: indentation_at
+      procedure :: impulse_at
    end type trajectory_t
 
 contains
@@ -334,6 +335,22 @@ contains
             - (1.0_wp - x)*step*right(col_velocity))
       end associate
    end function indentation_at
+
+   !> Impulse at a time of the contact, of a collocation solution
+   pure function impulse_at(self, time) result(impulse)
+      class(trajectory_t), intent(in) :: self
+      !> Time since first contact [s], up to that of the last node
+      real(wp), intent(in) :: time
+      !> Impulse [N s]
+      real(wp) :: impulse
+
+      real(wp) :: c(0:self%stages)
+      integer :: i
+
+      i = 0
+      call find_panel(self, time, i, c)
+      impulse = dot_product(self%state(col_impulse, i:i + self%stages), c)
+   end function impulse_at
 
    !> Find the panel that contains a time, and the weights of its nodes
    pure subroutine find_panel(self, time, first, c)

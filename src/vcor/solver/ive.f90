@@ -18,8 +18,8 @@ module vcor_solver_ive
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : end_of_blunt, error_of_blunt, error_of_echo, error_of_kernel, &
-      error_of_layer, kernel_share, layer_growth, layer_reach, layer_start, loosest_accuracy, &
+   use vcor_tuning, only : end_of_blunt, error_of_blunt, error_of_kernel, error_of_layer, &
+      error_of_motion, kernel_share, layer_growth, layer_reach, layer_start, loosest_accuracy, &
       plate_share, shallow_end, window_growth, window_margin
    implicit none
    private
@@ -64,8 +64,8 @@ contains
       type(modes_t) :: modes
       type(layer_misfit_t) :: misfit
       real(wp) :: end_time, ghost_end, window, first_window, growth, time_scale, error_of_sums
-      real(wp) :: stiffness, blunt
-      logical :: complete
+      real(wp) :: stiffness, blunt, impulse, known_time, known_impulse
+      logical :: complete, ends
 
       time_scale = impact%time_scale()
       end_time = self%settings%end_time
@@ -78,6 +78,8 @@ contains
          growth = layer_growth
       end if
       first_window = window
+      known_time = 0.0_wp
+      known_impulse = 0.0_wp
       do
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
          if (.not. modes%contact%error < 1.0_wp) then
@@ -101,18 +103,24 @@ contains
          call follow(self%collocator, impact, modes, self%accuracy, time_scale, end_time, &
             ghost_end, window, trajectory, complete, error)
          if (complete .or. allocated(error)) exit
+         if (trajectory%status /= contact_separated) then
+            known_time = window
+            known_impulse = trajectory%impulse_at(window)
+         end if
          window = growth*window
       end do
-      if (impact%plate%layered() .and. trajectory%steps > 0 .and. (allocated(error) &
-          .or. trajectory%status == contact_separated) &
-          .and. trajectory%time_of_max_force < layer_start*window) call raise(error, &
+      ends = trajectory%status == contact_separated
+      ! nor does it hold if the contact ends within a shorter window that showed no end
+      if (impact%plate%layered() .and. trajectory%steps > 0 .and. ((ends .or. allocated(error)) &
+          .and. trajectory%time_of_max_force < layer_start*window .or. ends &
+          .and. trajectory%state(col_time, trajectory%last) < known_time)) call raise(error, &
          error_numerical, 'the force is largest before the sum of exponentials of the plate ' &
          //'begins to hold: the plate is too soft, too thin or too light for this sphere; take a ' &
          //'larger plate.half_thickness or a lighter sphere')
       if (allocated(error)) return
       trajectory%accuracy = self%settings%accuracy
       if (impact%plate%layered()) trajectory%accuracy = max(trajectory%accuracy, layer_reach)
-      if (trajectory%status == contact_separated) then
+      if (ends) then
          error_of_sums = error_of_kernel*error_felt(impact, modes%contact, trajectory)
          if (impact%plate%layered()) then
             ! for ghost lines the window became longer than the contact needs
@@ -121,8 +129,10 @@ contains
                window = growth*window
             end do
             stiffness = impact%mass/window**2
-            error_of_sums = error_of_sums &
-               + (error_of_kernel*misfit%motion + error_of_echo*misfit%echo)*stiffness
+            impulse = trajectory%state(col_impulse, trajectory%last)/(impact%mass*impact%velocity)
+            error_of_sums = error_of_sums + error_of_motion*impulse*misfit%motion*stiffness
+            if (known_time > 0.0_wp) error_of_sums = max(error_of_sums, &
+               abs(trajectory%impulse_at(known_time) - known_impulse)/(impact%mass*impact%velocity))
             trajectory%cor_error = trajectory%cor_error + error_of_layer*stiffness &
                *merge(misfit%power_end, misfit%smooth_end, ends_as_power(impact, trajectory))
             ! 1 for a flat punch, 0 for a sphere and sharper bodies
