@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from program import INPUT
+from program import INPUT, NUMERICAL, PAPER
 
 CASE = """&impact velocity = 0.4, gravity = 9.81 /
 &sphere radius = 0.02, material = 'ball' /
@@ -215,3 +215,11 @@ def test_sweep(vcor):
         "separated",
     ]
     assert "no result" not in done.err
+
+
+def test_more_than_any_weight(vcor):
+    """A panel that ends without any indentation is no solution, and nothing is divided by it."""
+    path = PAPER / "butyl_power_law_50_frozen.nml"
+    words = ["plate.waves=relaxing", "contact.law=receding", "solver.method=ive", "impact.gravity=1e60"]
+    done = vcor("run", path, "--print", "cor", *(word for setting in words for word in ("--set", setting)))
+    assert done.code == NUMERICAL and "the accuracy asked for is out of reach" in done.err

@@ -125,6 +125,9 @@ contains
       change = apply(inverse, change)
       unit = problem%largest_condition
       if (.not. unit > 0.0_wp) unit = largest(e%x + change)
+      ! a panel without any indentation is none
+      self%failed = .not. unit > 0.0_wp
+      if (self%failed) return
       call problem%move(e, change, panel)
       size = largest(change)/unit
       if (self%stale) then
