@@ -67,6 +67,22 @@ def test_put_down_on_a_dashpot(vcor, velocity, waves):
     assert force == pytest.approx(other, rel=1e-7)
 
 
+@pytest.mark.parametrize("method", ["ive", "direct"])
+@pytest.mark.parametrize("law", ["boltzmann", "receding"])
+def test_rest_of_a_material_that_creeps(vcor, law, method):
+    """It comes to rest long after the end of the computation, or of the steps of method direct."""
+    gel = "'prony', poisson_ratio = 0.5, equilibrium_modulus = 1e5, moduli = 1e6, times = 100.0, viscosity = 1e4"
+    vcor.write(
+        CASE.replace("'sls', poisson_ratio = 0.5, glassy_modulus = 1e5, alpha = 50.0, beta = 100.0", gel)
+        .replace("velocity = 0.4", "velocity = 1e-3")
+    )
+    names = "max_indentation,residual_indentation"
+    words = ["--set", f"solver.method={method}", "--set", f"contact.law={law}"]
+    (largest, left), status = run(vcor, names, *words)
+    assert status == "rests"
+    assert left == pytest.approx(settled(1e5), rel=1e-12) and largest == left
+
+
 def test_rest_is_no_doubt(vcor):
     """In a sweep a sphere that rests is not counted among those with a large estimated error."""
     vcor.write(CASE + "&sweep parameter = 'impact.velocity', values = 1e-6, 0.4 /\n")

@@ -101,6 +101,7 @@ module vcor_impact_outcome
       !> Index in `thresholds` of the decisive measure; 0: none
       integer :: validity_cause = 0
    contains
+      procedure :: settle
       procedure :: is_finite
       procedure :: misses
    end type outcome_t
@@ -158,6 +159,20 @@ contains
       outcome%cor_sphere_error = trajectory%cor_sphere_error
       outcome%accuracy = trajectory%accuracy
    end function evaluate
+
+   !> Take the indentation of a sphere that rests from the balance of spring and weight: the
+   !> computation may end while the material still creeps. A fluid keeps its last indentation
+   pure subroutine settle(self, impact)
+      !> The outcome of an impact that ended at rest
+      class(outcome_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+
+      if (.not. impact%springs_back()) return
+      self%residual_indentation = (impact%mass*impact%gravity &
+         /(impact%factor*impact%modulus%rubbery()))**(1.0_wp/impact%law%exponent)
+      self%max_indentation = max(self%max_indentation, self%residual_indentation)
+      self%residual_ratio = self%residual_indentation/self%max_indentation
+   end subroutine settle
 
    !> Whether all numbers are finite: energies, for example, may overflow
    pure function is_finite(self)

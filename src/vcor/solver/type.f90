@@ -4,7 +4,7 @@ module vcor_solver_type
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    implicit none
    private
@@ -107,6 +107,9 @@ contains
       call solver%solve(impact, trajectory, error)
       if (.not. allocated(error)) then
          outcome = evaluate(impact, trajectory)
+         if (outcome%status == contact_resting &
+             .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
+            call outcome%settle(impact)
          if (outcome%status /= contact_separated) return
          if (.not. outcome%is_finite()) then
             call raise(error, error_numerical, 'the numbers of this impact are beyond all that ' &

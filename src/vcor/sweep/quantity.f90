@@ -53,7 +53,7 @@ module vcor_sweep_quantity
       status_t(point_failed, 'failed', 'in a sweep: the numerical solution failed', &
       'the message says why; the other method, by solver.method, may succeed'), &
       status_t(contact_resting, 'rests', 'its weight keeps the sphere in contact for good', &
-      'nothing: residual_indentation is that at the end of the computation'), &
+      'nothing: residual_indentation is that at rest, of a fluid the last one'), &
       status_t(point_pending, 'pending', 'in a sweep: the point is not solved yet', &
       'the same command with --resume')]
 
