@@ -64,6 +64,7 @@ program test_impacts
    call test_set("found.txt", 18, 1.0e-12_wp)
    call test_set("temperature.txt", 35, 1.2e-11_wp)
    call test_missed_drift()
+   call test_profile()
    call test_fleeing()
    call test_steps()
    call test_forces_inside()
@@ -102,6 +103,36 @@ contains
       call check_difference(abs(outcome(1)%cor_sphere - outcome(2)%cor_sphere), &
          honest_share*outcome(1)%cor_sphere_error, "what the first panel misses is stated")
    end subroutine test_missed_drift
+
+   !> The motion of a body with a profile r^2.5 is no series of integer powers at first, and the
+   !> rebound of a receding contact looks at the polynomials of the first panel
+   subroutine test_profile()
+      character(len=*), parameter :: text = &
+         "&impact velocity = 5.0 /"//new_line("a") &
+         //"&sphere shape = 'power', material = 'a', mass = 0.03, profile_power = 2.5, " &
+         //"profile_coefficient = 500.0 /"//new_line("a") &
+         //"&plate material = 'b', waves = 'none' /"//new_line("a") &
+         //"&contact law = 'receding' /"//new_line("a") &
+         //"&material name = 'a', model = 'rigid' /"//new_line("a") &
+         //"&material name = 'b', model = 'sls', glassy_modulus = 15.0e6, alpha = 300.0, " &
+         //"beta = 1200.0, density = 1100.0, poisson_ratio = 0.4 /"//new_line("a")
+      real(wp), parameter :: asked(2) = [1.0e-9_wp, 1.0e-11_wp]
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome(2)
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call build(row, "a profile r^2.5", text)
+      do i = 1, size(asked)
+         call make_ive(asked(i), ive)
+         call ive%solve(row%impact, trajectory, error)
+         call success(error, "a profile r^2.5 is solved")
+         outcome(i) = evaluate(row%impact, trajectory)
+      end do
+      call check_difference(abs(outcome(1)%cor - outcome(2)%cor), asked(1), "and its cor")
+   end subroutine test_profile
 
    !> Near-fluid plates that flee from the sphere: guesses at t1 in their rebounds go astray, and
    !> cost panels if nothing keeps them on the way
