@@ -65,6 +65,7 @@ program test_impacts
    call test_set("temperature.txt", 35, 1.2e-11_wp)
    call test_missed_drift()
    call test_profile()
+   call test_few_panels()
    call test_fleeing()
    call test_steps()
    call test_forces_inside()
@@ -133,6 +134,46 @@ contains
       end do
       call check_difference(abs(outcome(1)%cor - outcome(2)%cor), asked(1), "and its cor")
    end subroutine test_profile
+
+   !> Receding contacts take few panels, whatever relaxes in them: the totals of ten velocities
+   subroutine test_few_panels()
+      integer, parameter :: velocities = 10, spare = 4
+      character(len=*), parameter :: waves(2) = [character(len=10) :: "none", "hereditary"]
+      character(len=*), parameter :: materials(4) = [character(len=80) :: &
+         "model = 'elastic', modulus = 1e7", &
+         "model = 'sls', glassy_modulus = 15e6, alpha = 150, beta = 600", &
+         "model = 'sls', glassy_modulus = 15e6, alpha = 1500, beta = 60000", &
+         "model = 'cerf', equilibrium_modulus = 1e6, relaxing_modulus = 1e8, beta = 100"]
+      integer, parameter :: usual(2, 4) = reshape([40, 47, 40, 41, 96, 101, 81, 95], [2, 4])
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+      character(len=12) :: velocity
+      integer :: i, j, k, steps
+
+      call make_ive(1.0e-8_wp, ive)
+      do i = 1, size(materials)
+         do j = 1, size(waves)
+            steps = 0
+            do k = 1, velocities
+               write (velocity, "(f12.6)") 10.0_wp**(-1.0_wp + 2.0_wp*real(k - 1, wp) &
+                  /real(velocities - 1, wp))
+               call build(row, "few panels", "&impact velocity = "//velocity//" /"//new_line("a") &
+                  //"&sphere radius = 0.01, material = 'a' /"//new_line("a") &
+                  //"&plate half_thickness = 0.02, material = 'b', waves = '"//trim(waves(j)) &
+                  //"' /"//new_line("a")//"&contact law = 'receding', pair = 'series' /" &
+                  //new_line("a")//"&material name = 'a', model = 'rigid', density = 7800 /" &
+                  //new_line("a")//"&material name = 'b', density = 1100, poisson_ratio = 0.4, " &
+                  //trim(materials(i))//" /"//new_line("a"))
+               call ive%solve(row%impact, trajectory, error)
+               call success(error, "a receding contact is solved")
+               steps = steps + trajectory%steps
+            end do
+            call check(steps <= usual(j, i) + spare, "few panels: "//trim(materials(i)))
+         end do
+      end do
+   end subroutine test_few_panels
 
    !> Near-fluid plates that flee from the sphere: guesses at t1 in their rebounds go astray, and
    !> cost panels if nothing keeps them on the way
