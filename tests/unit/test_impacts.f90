@@ -67,6 +67,7 @@ program test_impacts
    call test_profile()
    call test_few_panels()
    call test_fleeing()
+   call test_crude_growth()
    call test_steps()
    call test_forces_inside()
    call finish()
@@ -228,6 +229,35 @@ contains
          //"&material name = 'p', model = 'sls', density = 1100.0, poisson_ratio = 0.5, " &
          //"glassy_modulus = 15e6, alpha = "//given(3)//", beta = "//given(4)//" /"//new_line("a")
    end function fluid
+
+   !> A plate that flees, in whose rebound a panel is crude enough to show a contact that grows again
+   !> until it has been halved more than once
+   subroutine test_crude_growth()
+      character(len=*), parameter :: text = &
+         "&impact velocity = 5.726386433489013 /"//new_line("a") &
+         //"&sphere radius = 0.01, material = 'a' /"//new_line("a") &
+         //"&plate half_thickness = 0.0451999637627, material = 'b', waves = 'relaxing' /" &
+         //new_line("a")//"&contact law = 'receding' /"//new_line("a") &
+         //"&material name = 'a', model = 'rigid', density = 7800.0 /"//new_line("a") &
+         //"&material name = 'b', model = 'sls', density = 1100.0, poisson_ratio = 0.45, " &
+         //"glassy_modulus = 6.094e6, alpha = 6.406e-7, beta = 1.252e6 /"//new_line("a")
+      real(wp), parameter :: asked(2) = [1.0e-6_wp, 1.0e-10_wp]
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome(2)
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call build(row, "a fleeing plate", text)
+      do i = 1, size(asked)
+         call make_ive(asked(i), ive)
+         call ive%solve(row%impact, trajectory, error)
+         call success(error, "a contact that seems to grow again is solved")
+         outcome(i) = evaluate(row%impact, trajectory)
+      end do
+      call check_difference(abs(outcome(1)%cor - outcome(2)%cor), asked(1), "and its cor")
+   end subroutine test_crude_growth
 
    !> Forces inside of the panels count where a plate flees: the energy of the waves feels them
    subroutine test_forces_inside()
