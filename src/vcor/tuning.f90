@@ -46,8 +46,10 @@ module vcor_tuning
    !> Samples per rate; the first sample over the inverse of the fastest rate
    integer, parameter :: samples_per_rate = 3 ! tested
    real(wp), parameter :: earliest_sample = 0.3_wp ! tested
-   !> Power of the time over the window by which errors count. With a higher one the sum may become
-   !> negative at first, with a lower one t^-a takes digits from the rest
+   !> Part of the window from which errors count in full; before, by this power of the time. With a
+   !> higher power the sum may become negative there, with a lower one t^-a takes digits from the
+   !> rest
+   real(wp), parameter :: full_weight = 0.03_wp ! tested
    real(wp), parameter :: weight_power = 1.5_wp ! tested
    !> Factor from the error of the integral to that of an impact, measured
    real(wp), parameter :: integral_felt = 3.0_wp ! tested

@@ -234,13 +234,13 @@ contains
    !> until it has been halved more than once
    subroutine test_crude_growth()
       character(len=*), parameter :: text = &
-         "&impact velocity = 5.726386433489013 /"//new_line("a") &
+         "&impact velocity = 5.6632 /"//new_line("a") &
          //"&sphere radius = 0.01, material = 'a' /"//new_line("a") &
-         //"&plate half_thickness = 0.0451999637627, material = 'b', waves = 'relaxing' /" &
+         //"&plate half_thickness = 0.04598, material = 'b', waves = 'relaxing' /" &
          //new_line("a")//"&contact law = 'receding' /"//new_line("a") &
          //"&material name = 'a', model = 'rigid', density = 7800.0 /"//new_line("a") &
          //"&material name = 'b', model = 'sls', density = 1100.0, poisson_ratio = 0.45, " &
-         //"glassy_modulus = 6.094e6, alpha = 6.406e-7, beta = 1.252e6 /"//new_line("a")
+         //"glassy_modulus = 6.094e6, alpha = 6.406e-7, beta = 1.30781e6 /"//new_line("a")
       real(wp), parameter :: asked(2) = [1.0e-6_wp, 1.0e-10_wp]
       type(row_t) :: row
       type(ive_t) :: ive

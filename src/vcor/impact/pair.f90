@@ -28,8 +28,8 @@ module vcor_impact_pair
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
    use vcor_numeric_quadrature, only : graded_rule
    use vcor_tuning, only : digits_lost, earliest_sample, fast_rate, fastest_rate, &
-      integral_felt, most_digits_lost, rate_spacing, samples_per_rate, slowest_rate, weight_power, &
-      wide_spacing
+      full_weight, integral_felt, most_digits_lost, rate_spacing, samples_per_rate, slowest_rate, &
+      weight_power, wide_spacing
    implicit none
    private
 
@@ -174,7 +174,7 @@ contains
       time = [time(1)*exp(-wide_spacing/real(samples_per_rate, wp) &
          *[(real(n + 1 - i, wp), i=1, n)]), time]
       self%samples = size(time)
-      self%weight = time**weight_power
+      self%weight = min(1.0_wp, time/full_weight)**weight_power
 
       call graded_rule(ends, node, self%share, self%last)
       self%time = [time, node]
