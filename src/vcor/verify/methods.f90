@@ -346,10 +346,11 @@ contains
 
       ! the internal variables have at most 11 digits
       integer, parameter :: most_digits = 11
-      real(wp) :: uncertainty(2)
+      real(wp) :: uncertainty(2), stated
       integer :: i
 
       self%name = name
+      self%digits = 0
       do i = 1, attempt_count
          self%value(i) = ieee_value(self%value(i), ieee_quiet_nan)
          if (attempts(i)%made) self%value(i) = quantity_value(attempts(i)%outcome, name)
@@ -358,17 +359,16 @@ contains
       if (two_methods) then
          self%best = self%value(attempt_refined)
          uncertainty(1) = abs(self%direct%limit - self%best)
-         associate (outcome => attempts(attempt_refined)%outcome)
-            if (name == 'cor') uncertainty(1) = max(uncertainty(1), outcome%cor_error)
-            if (name == 'cor_sphere') &
-               uncertainty(1) = max(uncertainty(1), outcome%cor_sphere_error)
-         end associate
+         stated = 0.0_wp
+         if (name == 'cor') stated = attempts(attempt_refined)%outcome%cor_error
+         if (name == 'cor_sphere') stated = attempts(attempt_refined)%outcome%cor_sphere_error
+         if (.not. all(ieee_is_finite([uncertainty(1), stated]))) return
+         uncertainty(1) = max(uncertainty(1), stated)
       else
          self%best = self%direct%limit
          uncertainty(1) = self%direct%error
       end if
       uncertainty(2) = abs(self%value(attempt_first) - self%best)
-      self%digits = 0
       if (.not. all(ieee_is_finite(uncertainty))) return
       self%scale = max(abs(self%best), size_of_whole(name, attempts(attempt_first)%outcome))
       if (.not. self%scale > 0.0_wp) return
