@@ -9,13 +9,18 @@ impacts whose contact time or residual indentation misses where that test does n
 last, impacts on layers that miss it as tests/cli/test_body_reference.py counts them, and impacts by
 product integration. With --tests it runs these tests of CTest, too, and names those that fail.
 
+With --spoil it only looks for a factor with which a test fails, for each constant: first the unit
+tests, then tests of the program.
+
     benchmarks/tuning.py [--factors 0.5,2] [--only REGEX] [--build DIR] [--accuracies 1e-6,1e-8,1e-10]
                          [--cases REGEX] [--tests REGEX]
+    benchmarks/tuning.py --spoil [--only REGEX] [--build DIR]
 
 Needs the compiler, CMake and valgrind; an hour for all constants.
 """
 
 import argparse
+import atexit
 import os
 import re
 import shutil
@@ -51,15 +56,23 @@ CASES = {
 }
 """Impacts whose instructions are counted: example, settings, and number of velocities."""
 
+SPOILING = (0.03, 30.0, 1.0e-4, 1.0e4, 1.0e-9, 1.0e9)
+"""Factors with --spoil; the last ones for thresholds between numbers that are far apart."""
+GUARDS = ("^test_", "^cli_test_(body|results|gravity|mechanics)$")
+"""Tests with --spoil, the faster ones first."""
+
 READER = """
 contains
 
-   !> Read other values, if a file of them is named
+   !> Read other values once, if a file of them is named
    subroutine read_tuning()
       character(len=300) :: name
       real(wp) :: value
       integer :: unit, status
+      logical, save :: is_read = .false.
 
+      if (is_read) return
+      is_read = .true.
       call get_environment_variable("VCOR_TUNING", name, status=status)
       if (status /= 0) return
       open(newunit=unit, file=trim(name), status="old", action="read")
@@ -196,6 +209,36 @@ def instructions(program, folder, environment, cases, times):
     return counts
 
 
+def failed_tests(folder, environment, tests, *options):
+    """Names of the tests that fail; a test that hangs fails."""
+    run = subprocess.run(["ctest", "--test-dir", folder / "build/release", "-R", tests, "--timeout", "200", *options],
+                         env=environment, text=True, capture_output=True, check=False)
+    return re.findall(r"- (\w+) \((?:Failed|Timeout|SEGFAULT|Subprocess aborted)", run.stdout)
+
+
+def changed(kind, value, factor):
+    """The value of a constant times a factor."""
+    if kind != "integer":
+        return value * factor
+    return min(max(round(value * factor), 1), 10**9)
+
+
+def spoil(folder, environment, values, chosen):
+    """Name for each constant a factor and a test that it fails."""
+    values.write_text("")
+    for tests in GUARDS:
+        if failed := failed_tests(folder, environment, tests):
+            sys.exit(f"these tests fail without a change: {' '.join(failed)}")
+    for name, kind, value in chosen:
+        found = ["none"]
+        for tests, factor in ((tests, factor) for tests in GUARDS for factor in SPOILING):
+            values.write_text(f"{name} {changed(kind, value, factor)!r}\n")
+            if failed := failed_tests(folder, environment, tests, "--stop-on-failure"):
+                found = [f"{factor:g}", *failed]
+                break
+        print(f"{name:24}", *found, flush=True)
+
+
 def main():
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -205,18 +248,25 @@ def main():
     parser.add_argument("--accuracies", default="1e-6,1e-8,1e-10")
     parser.add_argument("--cases", default="")
     parser.add_argument("--tests", default="")
+    parser.add_argument("--spoil", action="store_true")
     options = parser.parse_args()
     accuracies = [float(x) for x in options.accuracies.split(",")]
     folder = (options.build or Path(tempfile.mkdtemp(prefix="vcor_tuning_"))).resolve()
+    if not options.build:
+        atexit.register(shutil.rmtree, folder)
     program = folder / "build/release/vcor"
     if not program.exists():
         program = build(folder)
+    values = folder / f"values_{os.getpid()}.txt"
+    environment = dict(os.environ, VCOR_TUNING=str(values), OMP_NUM_THREADS="1")
+    chosen = [constant for constant in constants((ROOT / TUNING).read_text()) if re.search(options.only, constant[0])]
+    if options.spoil:
+        spoil(folder, environment, values, chosen)
+        return
     impacts = references(folder, SETS)
     layers = references(folder, {"body": 0.0})
     practical = references(folder, {"practical": SETS["practical"]})
     cases = {name: case for name, case in CASES.items() if re.search(options.cases, name)}
-    values = folder / f"values_{os.getpid()}.txt"
-    environment = dict(os.environ, VCOR_TUNING=str(values), OMP_NUM_THREADS="1")
 
     def measure(line):
         values.write_text(line)
@@ -226,12 +276,10 @@ def main():
         return [(n - i) / 1000.0 / points for n, i, (*_, points) in
                 zip(instructions(program, folder, environment, cases, 1), idle, cases.values())], missed
 
-    def failed_tests():
+    def remark():
         if not options.tests:
             return ""
-        run = subprocess.run(["ctest", "--test-dir", folder / "build/release", "-R", options.tests],
-                             env=environment, text=True, capture_output=True, check=False)
-        return "   failed: " + (" ".join(re.findall(r"- (\w+) \(", run.stdout)) or "none")
+        return "   failed: " + (" ".join(failed_tests(folder, environment, options.tests)) or "none")
 
     # what a run costs without an impact
     values.write_text("")
@@ -240,26 +288,19 @@ def main():
     usual, known = measure("")
     sets = [f"{accuracy:g}" for accuracy in accuracies] + ["body", "direct"]
     print("usual: instructions per impact [1000]",
-          ", ".join(f"{name} {count:.0f}" for name, count in zip(cases, usual)), failed_tests())
+          ", ".join(f"{name} {count:.0f}" for name, count in zip(cases, usual)), remark())
     for name, missed in zip(sets, known, strict=True):
         print(f"missed at {name}:", "; ".join(sorted(" ".join(miss) for miss in missed)) or "none")
     print(f"{'constant':24} {'factor':>6} " + " ".join(f"{name:>10}" for name in cases)
           + " ".join(f"{name:>9}" for name in sets) + "   new misses + receding (mended) of each set", flush=True)
-    for name, kind, value in constants((ROOT / TUNING).read_text()):
-        if not re.search(options.only, name):
-            continue
+    for name, kind, value in chosen:
         for factor in map(float, options.factors.split(",")):
-            other = value * factor
-            if kind == "integer":
-                other = round(other)
-            counts, missed = measure(f"{name} {other!r}\n")
+            counts, missed = measure(f"{name} {changed(kind, value, factor)!r}\n")
             row = f"{name:24} {factor:6g} " + " ".join(f"{c / u:10.3f}" for c, u in zip(counts, usual))
             for now, before in zip(missed, known):
                 tested = {m for m in now - before if not m[1].endswith("receding")}
                 row += f" {len(tested):>3}+{len(now - before) - len(tested)}({len(before - now)})"
-            print(row + failed_tests(), flush=True)
-    if not options.build:
-        shutil.rmtree(folder)
+            print(row + remark(), flush=True)
 
 
 if __name__ == "__main__":

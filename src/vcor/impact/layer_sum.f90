@@ -7,7 +7,8 @@
 !>
 !> `instant` is the exact C(oo). The impact is stable with the sum, as it is with the layer, if C
 !> plus the dent of a flat punch remains passive; so the misfit is weighted by the size of both.
-!> Where it is not passive, beyond the last point, growth is too slow to matter within the window.
+!> Where it is not passive, beyond the last point, growth is too slow to matter within the window
+!> of a sphere; for blunter bodies `vcor_solver_ive` refuses impacts with which it is not.
 !> Beyond the equidistant rates the points leave the line Re s = 2/window, as the rates do:
 !> responses there are damped, and echoes at such frequencies do not affect the motion.
 !>

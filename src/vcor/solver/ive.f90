@@ -12,7 +12,7 @@ module vcor_solver_ive
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
       col_plate, col_plate_velocity, col_time, contact_separated, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
@@ -116,7 +116,14 @@ contains
           .and. trajectory%state(col_time, trajectory%last) < known_time)) call raise(error, &
          error_numerical, 'the force is largest before the sum of exponentials of the plate ' &
          //'begins to hold: the plate is too soft, too thin or too light for this sphere; take a ' &
-         //'larger plate.half_thickness or a lighter sphere')
+         //"larger plate.half_thickness, a lighter sphere, or method = 'direct'")
+      ! the sums for bodies blunter than a sphere have fast rates that nothing else keeps in check
+      if (impact%plate%layered() .and. impact%law%exponent < 1.5_wp &
+          .and. trajectory%max_indentation > 0.0_wp .and. .not. allocated(error)) then
+         if (is_unstable(impact, modes, window, trajectory%max_indentation)) call raise(error, &
+            error_numerical, 'the sum of exponentials of the plate oscillates ever more with this ' &
+            //"contact: use method = 'direct' or a larger plate.footprint")
+      end if
       if (allocated(error)) return
       trajectory%accuracy = self%settings%accuracy
       if (impact%plate%layered()) trajectory%accuracy = max(trajectory%accuracy, layer_reach)
@@ -151,6 +158,48 @@ contains
          trajectory%kernel_error = contact%error
       end associate
    end subroutine solve
+
+   !> Whether a motion beside the largest indentation grows by e^2 or more within the window, which
+   !> with the layer itself it never does. Such motions are zeros of 1/(m s^2) + dent + C to the
+   !> right of Re s = 2/window, where it has no poles: by the argument principle it turns once
+   !> around 0 for each while s goes up that line and down again; beside a dashpot a quarter turn is
+   !> missing on either way
+   pure function is_unstable(impact, modes, window, indentation)
+      !> The impact, its plate a layer
+      type(impact_t), intent(in) :: impact
+      !> Contact and layer as sums
+      type(modes_t), intent(in) :: modes
+      !> Window of the sums [s]
+      real(wp), intent(in) :: window
+      !> Largest indentation [m]
+      real(wp), intent(in) :: indentation
+      logical :: is_unstable
+
+      ! steps of the frequency, over the inverse of the window and relative, and its end, beyond all
+      ! rates
+      real(wp), parameter :: line = 2.0_wp, step = 1.2_wp, growth = 1.02_wp, last = 1.0e4_wp
+      complex(wp) :: s, psi, now, before, pair(size(modes%plate%pair_rates))
+      real(wp) :: frequency, turn
+
+      frequency = 0.0_wp
+      turn = 0.0_wp
+      before = 1.0_wp
+      do while (frequency < last)
+         s = cmplx(line, frequency, wp)/window
+         psi = modes%plate%viscosity + sum(modes%plate%moduli/(s + modes%plate%rates))
+         associate (c => modes%plate%pair_moduli, l => modes%plate%pair_rates)
+            pair = s*(s + 2.0_wp*real(l, wp)) + real(l*conjg(l), wp)
+            psi = psi + sum((s*real(c, wp) + real(c*conjg(l), wp))*conjg(pair) &
+               /(real(pair, wp)**2 + aimag(pair)**2))
+         end associate
+         now = 1.0_wp/(impact%mass*s**2) + modes%instant + psi/s &
+            + 1.0_wp/(modes%contact%complex_modulus(s)*impact%law%slope(indentation))
+         turn = turn + atan2(aimag(now*conjg(before)), real(now*conjg(before), wp))
+         before = now/abs(now)
+         frequency = max(frequency + step, growth*frequency)
+      end do
+      is_unstable = abs(turn) > pi
+   end function is_unstable
 
    !> Whether the force ends as s^1.5, so that errors of the fast response of a layer appear in the
    !> velocity at the end
