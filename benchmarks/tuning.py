@@ -213,6 +213,8 @@ def failed_tests(folder, environment, tests, *options):
     """Names of the tests that fail; a test that hangs fails."""
     run = subprocess.run(["ctest", "--test-dir", folder / "build/release", "-R", tests, "--timeout", "200", *options],
                          env=environment, text=True, capture_output=True, check=False)
+    if "No tests were found" in run.stdout + run.stderr:
+        sys.exit(f"there are no tests '{tests}': run scripts/test.sh first, which makes build/venv for them")
     return re.findall(r"- (\w+) \((?:Failed|Timeout|SEGFAULT|Subprocess aborted)", run.stdout)
 
 
