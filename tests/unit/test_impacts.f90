@@ -230,8 +230,8 @@ contains
          //"glassy_modulus = 15e6, alpha = "//given(3)//", beta = "//given(4)//" /"//new_line("a")
    end function fluid
 
-   !> A plate that flees, in whose rebound a panel is crude enough to show a contact that grows again
-   !> until it has been halved more than once
+   !> A plate that flees, in whose rebound a panel is crude enough to show a contact that grows
+   !> again until it has been halved more than once
    subroutine test_crude_growth()
       character(len=*), parameter :: text = &
          "&impact velocity = 5.6632 /"//new_line("a") &

@@ -121,8 +121,8 @@ contains
       if (impact%plate%layered() .and. impact%law%exponent < 1.5_wp &
           .and. trajectory%max_indentation > 0.0_wp .and. .not. allocated(error)) then
          if (is_unstable(impact, modes, window, trajectory%max_indentation)) call raise(error, &
-            error_numerical, 'the sum of exponentials of the plate oscillates ever more with this ' &
-            //"contact: use method = 'direct' or a larger plate.footprint")
+            error_numerical, 'the sum of exponentials of the plate oscillates ever more with ' &
+            //"this contact: use method = 'direct' or a larger plate.footprint")
       end if
       if (allocated(error)) return
       trajectory%accuracy = self%settings%accuracy
