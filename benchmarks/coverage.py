@@ -22,8 +22,8 @@ sys.path.insert(0, str(TESTS))
 import test_identify as cases  # noqa: E402
 
 import vcor  # noqa: E402
-from vcor import identification as inner  # noqa: E402
-from vcor.data import Data  # noqa: E402
+from vcor.materials import identification as inner  # noqa: E402
+from vcor.materials.data import Data  # noqa: E402
 
 
 def by_interval(case, data, errors, truth):

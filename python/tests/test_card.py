@@ -9,8 +9,8 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor import cards
-from vcor.card_formats import FORMATS, GAS, UNITS, Card
+from vcor.exchange import cards
+from vcor.exchange.card_formats import FORMATS, GAS, UNITS, Card
 
 ALL = list(FORMATS)
 SERIES = ["abaqus", "ansys", "ansys-mpl", "lsdyna", "openradioss", "comsol"]

@@ -14,8 +14,8 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor import exchange
-from vcor.contact_laws import HERTZ, LINEAR, VISCOELASTIC
+from vcor.exchange import codes
+from vcor.exchange.contact_laws import HERTZ, LINEAR, VISCOELASTIC
 
 VELOCITIES = np.geomspace(0.05, 5, 5)
 RUBBER = {"name": "rubber", "model": "sls", "glassy_modulus": 1.5e7, "alpha": 300.0, "beta": 1200.0,
@@ -252,9 +252,9 @@ def law_of(text, twin):
 def test_programs_that_are_not_run_here():
     # MFiX, HERTZIAN: what gives 0.346, 0.540, 0.727, 0.910 is 0.3, 0.5, 0.7, 0.9
     for e, entered in ((0.346, 0.3), (0.540, 0.5), (0.727, 0.7), (0.910, 0.9)):
-        assert exchange._entered_in_mfix(e) == pytest.approx(entered, abs=1e-3)
+        assert codes._entered_in_mfix(e) == pytest.approx(entered, abs=1e-3)
     wall = vcor.pair([RUBBER, STEEL], (0.005,))
-    texts = {name: str(vcor.export(wall, name, VELOCITIES)) for name in exchange.TARGETS}
+    texts = {name: str(vcor.export(wall, name, VELOCITIES)) for name in codes.TARGETS}
     for name in ("mercurydpm", "mfix", "chrono"):
         assert "was not run" in texts[name]
     assert "des_en_wall_input(1)" in texts["mfix"]
@@ -302,18 +302,16 @@ def test_laws_that_are_not_there():
 
 def test_command(tmp_path, capsys):
     words = [str(BEADS), "--for", "rebound", "--velocities", "0.1:1:4"]
-    exchange.main(words)
+    codes.main(words)
     said = capsys.readouterr().out
     assert "def restitution(" in said
-    exchange.main([*words, "--output", str(tmp_path)])
+    codes.main([*words, "--output", str(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == {
         f"granular_pair_rebound.{end}" for end in ("py", "c", "svg")
     }
     assert (tmp_path / "granular_pair_rebound.py").read_text() == said
     assert "written" in capsys.readouterr().out
-    exchange.main(
-        [*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"]
-    )
+    codes.main([*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"])
     assert (tmp_path / "granular_pair_master.csv").exists()
 
 
@@ -332,7 +330,7 @@ def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
     given |= dict(zip(words[::2], words[1::2], strict=False))
     flags = [word for word in words if word == "--master"]
     with pytest.raises(SystemExit) as caught:
-        exchange.main([str(BEADS), *[x for pair in given.items() for x in pair], *flags])
+        codes.main([str(BEADS), *[x for pair in given.items() for x in pair], *flags])
     error = capsys.readouterr().err
     assert (caught.value.code, error.count("\n")) == (code, 1)
     assert said in error

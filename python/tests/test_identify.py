@@ -10,9 +10,9 @@ import pytest
 from conftest import ROOT
 
 import vcor
-from vcor import identification
-from vcor.data import Data
-from vcor.observations import read_columns
+from vcor.materials import identification
+from vcor.materials.data import Data
+from vcor.materials.observations import read_columns
 
 DATA = ROOT / "python" / "tests" / "data"
 CASE = """&impact velocity = 1.0 /

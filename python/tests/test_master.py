@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import vcor
-from vcor import master_curve
+from vcor.materials import master
 
 C1, C2, REFERENCE = 12.0, 80.0, 293.15
 
@@ -93,13 +93,13 @@ def test_a_file_with_a_temperature_in_its_name(tmp_path):
     path = tmp_path / "epdm@20C.csv"
     path.write_text(table(f"T [C],{HEAD}", [10, 20]))
     assert len(vcor.master(path).temperatures) == 2
-    cold = master_curve.read_curves(f"{file_of(tmp_path / 'a@b.csv', [5])}@-20C")
+    cold = master.read_curves(f"{file_of(tmp_path / 'a@b.csv', [5])}@-20C")
     assert [curve.temperature for curve in cold] == [pytest.approx(253.15)]
 
 
 def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
     path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 5))
-    master_curve.main([str(path), "--reference", "20C", "--output", str(tmp_path)])
+    master.main([str(path), "--reference", "20C", "--output", str(tmp_path)])
     assert "wlf_c1" in capsys.readouterr().out
     written = json.loads((tmp_path / "raw_master.json").read_text())
     assert written["laws"][0]["law"] == "WLF"
@@ -219,7 +219,7 @@ def test_shear_moduli_become_tensile_ones(tmp_path):
         vcor.master(path)
     found = vcor.master(path, poisson_ratio=0.4)
     assert np.allclose(found.curve(), tensile.curve(), rtol=1e-6)
-    master_curve.main([str(path), "--poisson-ratio", "0.4", "--output", str(tmp_path), "--quiet"])
+    master.main([str(path), "--poisson-ratio", "0.4", "--output", str(tmp_path), "--quiet"])
     assert (tmp_path / "raw_master.csv").exists()
 
 

@@ -19,7 +19,7 @@ from conftest import PAPER, ROOT, SWEEPS
 
 import vcor
 from vcor import _command
-from vcor.data import Data
+from vcor.materials.data import Data
 from vcor.plot import KINDS, STYLE, _label_decades, figure, main, save
 
 

@@ -16,14 +16,14 @@ from ._library import (
     __version__,
 )
 from .case import Case, Material, read
-from .fit import Fit, fit
+from .materials.fit import Fit, fit
 from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
 
 if TYPE_CHECKING:
-    from .cards import card, read_card
-    from .exchange import export, pair
-    from .identification import identify
-    from .master_curve import master
+    from .exchange.cards import card, read_card
+    from .exchange.codes import export, pair
+    from .materials.identification import identify
+    from .materials.master import master
     from .uncertainty import propagate, sensitivities
 
 __all__ = [
@@ -56,13 +56,13 @@ for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, Usa
 
 #: What needs scipy, by its module; imported when it is used
 _LATER = {
-    "card": "cards",
-    "export": "exchange",
-    "identify": "identification",
-    "master": "master_curve",
-    "pair": "exchange",
+    "card": "exchange.cards",
+    "export": "exchange.codes",
+    "identify": "materials.identification",
+    "master": "materials.master",
+    "pair": "exchange.codes",
     "propagate": "uncertainty",
-    "read_card": "cards",
+    "read_card": "exchange.cards",
     "sensitivities": "uncertainty",
 }
 

@@ -20,7 +20,6 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from . import _library
-from ._command import read_text, write
 from ._library import (
     Error,
     Floats,
@@ -32,6 +31,7 @@ from ._library import (
     numbers,
     whole,
 )
+from ._text import read_text, write
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -552,6 +552,12 @@ def _restored(text: str, path: str, name: str, settings: Mapping[str, str]) -> C
     for address, value in settings.items():
         case[address] = value
     return case
+
+
+def number(case: Case, address: str, missing: float = math.nan) -> float:
+    """Number at an address of a case."""
+    value = case[address]
+    return float(value) if isinstance(value, (int, float)) else missing
 
 
 def as_case(case: Case | str | os.PathLike[str]) -> Case:

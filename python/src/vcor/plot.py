@@ -29,11 +29,12 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
-from . import _command
-from ._command import FORMATS, printable
+from . import _command, _text
+from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, whole
+from ._text import printable
 from .case import listed
-from .data import NAMES, PREFIXES, Data
+from .materials.data import NAMES, PREFIXES, Data
 from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
@@ -704,7 +705,7 @@ def save(made: Figure, path: str | os.PathLike[str]) -> None:
     bytes_ = io.BytesIO()
     with mpl.style.context(STYLE):
         made.savefig(bytes_, format=path.suffix[1:], metadata=dated.get(path.suffix))
-    _command.write(path, bytes_.getvalue())
+    _text.write(path, bytes_.getvalue())
 
 
 def _parser() -> _command.Parser:
@@ -780,7 +781,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         made = figure(options.files, **settings)
         first = next(name for name in options.files if is_result(name))
         usual = f"{Path(first).stem}_{options.kind or Result(first).kind()}"
-        path = _command.place(options.output, usual, FORMATS, options.format, options.files)
+        path = _text.place(options.output, usual, FORMATS, options.format, options.files)
         if options.script and path.stem in sys.modules:
             raise UsageError(f"a script {path.stem}.py would stand in the way of the package "
                              f"{path.stem}, expected another --output")  # fmt: skip
@@ -788,7 +789,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         written = [path]
         if options.script:
             written.append(path.with_suffix(".py"))
-            _command.write(written[-1], _script(options.files, settings, path).encode())
+            _text.write(written[-1], _script(options.files, settings, path).encode())
         if not options.quiet:
             sys.stdout.write("".join(f"written {path}\n" for path in written))
 

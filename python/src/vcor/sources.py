@@ -12,10 +12,10 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-from ._command import near, number, printable, read_text
 from ._library import Error, InputError, UsageError
-from .case import Case
-from .data import ZERO_C, is_temperature
+from ._text import near, printable, read_text
+from .case import Case, number
+from .materials.data import ZERO_C, is_temperature
 from .results import open as open_results
 
 Source = str | os.PathLike[str] | xr.Dataset

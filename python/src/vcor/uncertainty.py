@@ -18,10 +18,10 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtri
 
-from . import _command, _library
+from . import _command, _library, _text
 from ._library import MOST_SEED, Floats, InputError, NumericalError, UsageError, whole, within
 from .case import MOST_POINTS, Case, as_case, listed, read, with_folder, with_material
-from .observations import sharpen
+from .materials.observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
 ACCURACY = 1e-11
@@ -97,7 +97,7 @@ class Spread:
         if not isinstance(source, Mapping):
             folder, name = Path(source).parent.absolute(), source
             try:
-                source = json.loads(_command.read_text(name, "strict"))
+                source = json.loads(_text.read_text(name, "strict"))
             except ValueError:
                 raise InputError(f"--covariance {name}: found no JSON of vcor fit or "
                                  "identify") from None  # fmt: skip
@@ -167,7 +167,7 @@ class Uncertainty:
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
         table = self.table
-        return _command.document(
+        return _text.document(
             samples=self.samples,
             without_result=self.lost,
             validity=self.validity,
@@ -566,4 +566,6 @@ def _work(options: argparse.Namespace) -> None:
     texts = {".json": found.as_dict()}
     figure = found.figure(str(found.table.quantity.values[0]))
     stem = f"{Path(options.case[0]).stem}_uncertainty"
-    _command.finish(options, str(found), stem, texts, figure)
+    from ._outputs import finish
+
+    finish(options, str(found), stem, texts, figure)

@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
-from . import _command, _library
-from ._library import Error, Floats, InputError, NumericalError, UsageError, within
-from .card_formats import GAS
+from .. import _command, _library, _text
+from .._library import Error, Floats, InputError, NumericalError, UsageError, within
+from ..exchange.card_formats import GAS
 from .data import ZERO_C
 from .fit import NOT_GIVEN, ratio_of
 
@@ -144,7 +144,7 @@ class Master:
 
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
-        return _command.document(
+        return _text.document(
             reference_temperature=self.reference_temperature,
             temperature=self.temperatures,
             log10_shift=self.log_shift,
@@ -185,7 +185,7 @@ class Master:
 
     def figure(self) -> Any:
         """Figure (matplotlib): the master curve, and the shift factors with their laws."""
-        from .plot import HEIGHT, PAGE, drawn
+        from ..plot import HEIGHT, PAGE, drawn
 
         with drawn(PAGE, HEIGHT, 1, 2) as (made, (left, right)):
             dynamic = self.curves[0].dynamic
@@ -308,7 +308,7 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) 
     ratio.
     """
     path, given = _parts(os.fspath(name))
-    lines = _command.read_text(path).splitlines()
+    lines = _text.read_text(path).splitlines()
     if given:
         return [_curve(path, lines, _kelvin(given, path), poisson_ratio)]
     told = [line for line in lines[:40] if not line.lstrip().startswith("#")]
@@ -510,7 +510,9 @@ def _work(options: argparse.Namespace) -> None:
     }
     report = f"{found}\nshift of a &material, which vcor fit {stem}.csv takes over:\n"
     report += "".join(f"   {pair}\n" for pair in pairs)
-    _command.finish(options, report, stem, texts, found.figure())
+    from .._outputs import finish
+
+    finish(options, report, stem, texts, found.figure())
 
 
 def _rows(columns: Sequence[Floats]) -> str:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from ._library import InputError, UsageError
-from .case import _written
+from .._library import InputError, UsageError
+from ..case import _written
 
 #: Gas constant [J/(mol K)]
 GAS = 8.31446261815324

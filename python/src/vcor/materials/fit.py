@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _library
-from ._library import InputError, numbers, whole, within
-from .case import scalars
+from .. import _library
+from .._library import InputError, numbers, whole, within
+from ..case import scalars
 
 #: Poisson's ratio that says that there is none
 NOT_GIVEN = 1.0

@@ -10,8 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ._command import read_text
-from ._library import Floats, InputError
+from .._library import Floats, InputError
+from .._text import read_text
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 #: Units that take a prefix

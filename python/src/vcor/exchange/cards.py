@@ -12,12 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _command
-from ._command import number
-from ._library import InputError, NumericalError, UsageError, numbers, whole, within
+from .. import _command, _text
+from .._library import InputError, NumericalError, UsageError, numbers, whole, within
+from ..case import MOST_POINTS, Case, number
+from ..sources import material_case
 from .card_formats import FORMATS, UNITS, Card, Source, Terms
-from .case import MOST_POINTS, Case
-from .sources import material_case
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)
@@ -229,7 +228,7 @@ def read_card(
         within(poisson_ratio, "--poisson-ratio", -1, 0.5)
     if modulus is not None:
         within(modulus, "modulus", 0, math.inf)
-    text = _command.read_text(path)
+    text = _text.read_text(path)
     if code is None:
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
     if code not in FORMATS:
@@ -279,7 +278,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _work(options: argparse.Namespace) -> None:
     nu = options.poisson_ratio
-    if re.search(r"(?im)^\s*&material\b", _command.read_text(options.file)):
+    if re.search(r"(?im)^\s*&material\b", _text.read_text(options.file)):
         if not options.code:
             raise UsageError(f"{options.file} is a case, expected --material and --for")
         options.material = options.material or _only(options.file)
@@ -299,8 +298,8 @@ def _work(options: argparse.Namespace) -> None:
         text, notes = str(made), list(made.remarks)
     if options.output:
         ending = Path(options.output).suffix[1:] or ("nml" if text.endswith("/\n") else "txt")
-        path = _command.place(options.output, made.name, [ending], None, [options.file])
-        _command.write(path, text.encode())
+        path = _text.place(options.output, made.name, [ending], None, [options.file])
+        _text.write(path, text.encode())
     else:
         sys.stdout.write(text)
     for note in notes:

@@ -20,10 +20,9 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import chdtri, ndtri, stdtrit
 
-from . import _command, _library
-from ._command import number
-from ._library import MOST_SEED, Error, Floats, InputError, NumericalError, UsageError, whole
-from .case import Case, as_case, listed, progress_bar, read, scalars, with_material
+from .. import _command, _library, _text
+from .._library import MOST_SEED, Error, Floats, InputError, NumericalError, UsageError, whole
+from ..case import Case, as_case, listed, number, progress_bar, read, scalars, with_material
 from .fit import fit
 from .observations import (
     COEFFICIENTS,
@@ -143,7 +142,7 @@ class Identification:
         deviations = np.sqrt(np.diag(covariance))
         rows = [dataclasses.asdict(one) for one in self.estimates]
         keys = ("combination", "relative_error")
-        return _command.document(
+        return _text.document(
             model=self.model,
             parameters=[{"name": row.pop("address"), **row} for row in rows],
             covariance=covariance * np.outer(values, values),
@@ -170,7 +169,7 @@ class Identification:
 
     def figure(self) -> Any:
         """Figure (matplotlib): data, model with the band of cor, and residuals below."""
-        from .plot import COLUMN, HEIGHT, PAGE, _label_decades, _labelled, _legend, drawn
+        from ..plot import COLUMN, HEIGHT, PAGE, _label_decades, _labelled, _legend, drawn
 
         names = list(dict.fromkeys(row["quantity"] for row in self.data))
         width = COLUMN if len(names) == 1 else PAGE
@@ -917,4 +916,6 @@ def _work(options: argparse.Namespace) -> None:
         report += "".join(f"no result: {error}\n" for error in refused)
     texts = {".nml": best.case.text(), ".json": written}
     stem = f"{Path(options.case).stem}_identified"
-    _command.finish(options, report, stem, texts, best.figure())
+    from .._outputs import finish
+
+    finish(options, report, stem, texts, best.figure())

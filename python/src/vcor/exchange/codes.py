@@ -24,9 +24,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from . import _command, _library
-from ._command import number
-from ._library import (
+from .. import _command, _library, _text
+from .._library import (
     Floats,
     InputError,
     NoResultWarning,
@@ -35,7 +34,7 @@ from ._library import (
     numbers,
     whole,
 )
-from .case import Case, as_case
+from ..case import Case, as_case, number
 from .contact_laws import LAWS, Twin
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -66,7 +65,7 @@ class Target:
     run: str = ""
 
 
-_PROGRAMS = tomllib.loads(_command.read_text(TEMPLATES / "programs.toml"))
+_PROGRAMS = tomllib.loads(_text.read_text(TEMPLATES / "programs.toml"))
 TARGETS = {name: Target(name, **keys) for name, keys in _PROGRAMS.items()}
 
 
@@ -91,7 +90,7 @@ class Export:
 
     def figure(self) -> Any:
         """Figure (matplotlib) of e of vcor, and of the law of the program over it."""
-        from .plot import COLUMN, HEIGHT, _label_decades, drawn
+        from ..plot import COLUMN, HEIGHT, _label_decades, drawn
 
         with drawn(COLUMN, HEIGHT) as (made, axis):
             name = str(next(iter(self.table.dims)))
@@ -322,7 +321,7 @@ def _finished(
     texts = {}
     for ending in target.files:
         comment = COMMENTS.get(ending, "# ")
-        said = [comment + _command.printable(line) for line in lines]
+        said = [comment + _text.printable(line) for line in lines]
         if ending == ".xml":
             said = [line.replace("--", "- -") for line in said]
         template = (TEMPLATES / f"{target.name}{ending}.txt").read_text(encoding="utf-8")
@@ -480,7 +479,7 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
         f"x [{attrs['units']}], e [1], t_c/x [s per unit of x]",
     ]
     rows = _rows(shown.x.values, shown[curve.attrs["e"]].values, ratio)
-    head = "".join(f"# {_command.printable(line)}\n" for line in lines)
+    head = "".join(f"# {_text.printable(line)}\n" for line in lines)
     return Export("master", shown, {".csv": f"{head}x,e,t_c/x\n{rows}\n"}, lines, 0.0, {})
 
 
@@ -530,4 +529,6 @@ def _work(options: argparse.Namespace) -> None:
         sys.stdout.write(str(found))
         return
     stem = f"{Path(options.case).stem}_{found.target}"
-    _command.finish(options, "\n".join(found.header), stem, found.texts, found.figure())
+    from .._outputs import finish
+
+    finish(options, "\n".join(found.header), stem, found.texts, found.figure())

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
-from . import _library
-from ._command import near, number, read_text
-from ._library import Error, Floats, InputError, NoResultWarning
-from .case import Case, arrays
+from .. import _library
+from .._library import Error, Floats, InputError, NoResultWarning
+from .._text import near, read_text
+from ..case import Case, arrays, number
 from .data import Data, plain_name
 from .fit import NOT_GIVEN
-from .master_curve import read_curves
+from .master import read_curves
 
 Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
 

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from ._library import Floats, NumericalError
+from .._library import Floats, NumericalError
 
 #: Relative error of the solutions of a law
 ACCURACY = 1e-9

@@ -1,0 +1,28 @@
+"""What a command leaves: its report, its files and a figure."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from ._text import place, write
+from .plot import save
+
+
+def finish(
+    options: argparse.Namespace, report: str, stem: str, contents: Mapping[str, Any], figure: Any
+) -> None:
+    """Write texts, or what goes into JSON, by the ends of their names and a figure, and report."""
+    folder = options.output if options.output.endswith("/") else f"{options.output}/"
+    paths = [place(folder, stem + end.rpartition(".")[0], [end.rpartition(".")[2]], None, [])
+             for end in contents]  # fmt: skip
+    for path, content in zip(paths, contents.values(), strict=True):
+        text = content if isinstance(content, str) else json.dumps(content, indent=1) + "\n"
+        write(path, text.encode())
+    paths.append(place(folder, stem, [options.format], None, []))
+    save(figure, paths[-1])
+    if not options.quiet:
+        sys.stdout.write(f"{report}\nwritten {', '.join(map(str, paths))}\n")

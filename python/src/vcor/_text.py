@@ -1,0 +1,122 @@
+"""Texts in and out: lines that can be read, names of files, and files written whole."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import os
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ._library import Error, FileError, UsageError, __version__
+
+
+def near(word: str, known: Iterable[str]) -> str:
+    """What to add to a message about an unknown name, if a known one is like it."""
+    found = difflib.get_close_matches(word, list(known), 1)
+    return f"; did you mean '{found[0]}'?" if found else ""
+
+
+def printable(text: str) -> str:
+    """A text on one line: `?` for each character that has no shape."""
+    return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
+
+
+def read_text(path: str | os.PathLike[str], errors: str = "replace") -> str:
+    """Text of a file, without a byte order mark."""
+    if not os.fspath(path):
+        raise FileError("the name of a file is empty")
+    try:
+        return Path(path).read_text(encoding="utf-8-sig", errors=errors)
+    except OSError as error:
+        raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
+
+
+def document(**entries: Any) -> dict[str, Any]:
+    """Results as they are written to JSON, which has no infinity: None in its place."""
+
+    def plain(value: Any) -> Any:
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, Mapping):
+            return {key: plain(one) for key, one in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [plain(one) for one in value]
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    return {"program": "vcor", "version": __version__, **plain(entries)}
+
+
+def name_flaw(name: str) -> str:
+    """What is wrong with the name of a file to be written, empty if nothing is."""
+    for part in name.split("/"):
+        if part.startswith(("|", "<")):
+            return f"'{name}' has a part that begins with '{part[0]}', a pipe to other programs"
+    return ""
+
+
+def place(
+    output: str | None,
+    usual: str,
+    endings: Sequence[str],
+    ending: str | None,
+    inputs: Sequence[str],
+) -> Path:
+    """Where the file of a command goes: a name, or a folder, which is made if it is not there.
+
+    Parameters
+    ----------
+    output
+        Value of --output; a name without an ending, or with a slash at its end, is a folder.
+    usual
+        Name in a folder, without its ending.
+    endings
+        Endings that the file may have; the first one is the usual one.
+    ending
+        Value of --format.
+    inputs
+        Files that must not be replaced.
+    """
+    path = Path(output or ".")
+    if not output or output.endswith("/") or path.is_dir() or path.suffix in ("", "."):
+        path = path / f"{usual}.{ending or endings[0]}"
+    elif path.suffix[1:] not in endings:
+        raise UsageError(
+            f"unknown format '{path.suffix[1:]}' of '{output}', known: {', '.join(endings)}; "
+            "the name of a folder ends with a slash"
+        )
+    elif ending and path.suffix[1:] != ending:
+        raise UsageError(f"the name '{output}' ends with {path.suffix}, but --format is {ending}")
+    if flaw := name_flaw(path.name):
+        raise FileError(f"cannot write the file: the name {flaw}, expected another name")
+    for name in inputs:
+        if path.resolve() == Path(name).resolve():
+            raise UsageError(f"{path} would replace a file that is read, expected another --output")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise FileError(f"{path.parent}: found a file, expected the name of a folder") from None
+    except OSError as error:
+        raise FileError(f"{path.parent}: {error.strerror}") from None
+    return path
+
+
+def write(path: Path, data: bytes) -> None:
+    """Write a file under another name and rename it, so that there is never half of it."""
+    part = None
+    try:
+        if path.exists() and not path.is_file():
+            raise FileError(f"{path}: found a folder or a device, expected the name of a file")
+        descriptor, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.")
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+            os.umask(mask := os.umask(0))
+            os.fchmod(file.fileno(), path.stat().st_mode if path.exists() else 0o666 & ~mask)
+        Path(part).replace(path)
+    except OSError as error:
+        if part:
+            Path(part).unlink(missing_ok=True)
+        if isinstance(error, Error):
+            raise
+        raise FileError(f"{path}: {error.strerror}") from None

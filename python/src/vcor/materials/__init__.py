@@ -1,0 +1,1 @@
+"""Materials from measurements: data, fits, master curves, identification."""
