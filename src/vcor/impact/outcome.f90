@@ -168,8 +168,8 @@ contains
       type(impact_t), intent(in) :: impact
 
       if (.not. impact%springs_back()) return
-      self%residual_indentation = (impact%mass*impact%gravity &
-         /(impact%factor*impact%modulus%rubbery()))**(1.0_wp/impact%law%exponent)
+      self%residual_indentation = impact%law%inverse(impact%mass*impact%gravity &
+         /(impact%factor*impact%modulus%rubbery()))
       self%max_indentation = max(self%max_indentation, self%residual_indentation)
       self%residual_ratio = self%residual_indentation/self%max_indentation
    end subroutine settle

@@ -410,7 +410,7 @@ contains
       !> Node
       integer, intent(in) :: n
 
-      real(wp) :: known, linear, quadratic, single, own, last_u, secant
+      real(wp) :: known, linear, quadratic, single, own, last_u
       logical :: two_terms
 
       call run%motion%respond(impact, n, 0.0_wp)
@@ -431,9 +431,9 @@ contains
                  v_0 => run%motion%velocity(1), slowing => run%motion%velocity(2), &
                  weight => run%motion%weight, alpha => run%motion%alpha)
          call impact%law%solve(per_force*(linear + run%viscosity/weight), per_force*quadratic, &
-            s_0 - per_force*known, run%s + run%kernel%dt*run%speed, run%s, secant)
-         run%u = run%s*secant
-         run%slope = impact%law%exponent*secant
+            s_0 - per_force*known, run%s + run%kernel%dt*run%speed, run%s)
+         run%u = impact%law%u(run%s)
+         run%slope = impact%law%slope(run%s)
          run%du(n) = run%u - last_u
          if (two_terms) call run%second%accept(n, run%du)
          run%force = known + (linear + quadratic*run%u)*run%u
