@@ -49,7 +49,7 @@ contains
             //integer_text(outcome%steps)//' steps), status '//status_name(outcome%status)//nl
       else
          do i = 1, size(shown)
-            if (shown(i) == 'rebound_height' .and. ieee_is_nan(outcome%rebound_height)) cycle
+            if (ieee_is_nan(quantity_value(outcome, shown(i)))) cycle
             associate (quantity => columns(quantity_place(shown(i))))
                text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
                   shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &

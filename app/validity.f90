@@ -161,8 +161,8 @@ contains
                words = "Hertz' force is about "//percent(0.1_wp*value**2) &
                   //' too high; a slower impact makes a smaller contact'
             case ('thickness_ratio')
-               words = 'the dent feels the back of the plate, the force is about ' &
-                  //percent(value)//' too low; take a thicker plate'
+               words = 'the plate is thin for this contact: if free, softer than a half space; ' &
+                  //"compare waves = 'body'"
             case ('plate_wave_number')
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"
@@ -179,6 +179,11 @@ contains
             case ('mean_pressure')
                words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
                   //'too high; take a slower impact'
+            case ('bending_loss')
+               words = 'this plate bends, which takes about '//percent(value) &
+                  //" of the energy and is not computed; compare waves = 'body'"
+            case ('energy_loss')
+               words = gain()
             case ('footprint_effect')
                words = 'cor is that of a face whose waves start from a disc of some size; ' &
                   //'cor_sphere feels less of it'
@@ -188,6 +193,22 @@ contains
             end select
          end associate
       end function sentence
+
+      !> Where the energy comes from that the sphere, or both bodies, have gained
+      function gain() result(words)
+         character(len=:), allocatable :: words
+
+         if (outcome%cor_sphere > 1.0_wp .and. outcome%energy_loss >= 0.0_wp) then
+            words = 'the sphere leaves faster than it came: its weight did more work than the ' &
+               //'contact took'
+         else if (outcome%cor_sphere <= 1.0_wp .and. outcome%energy_loss >= 0.0_wp) then
+            words = 'the bodies separate faster than they met, as the plate still moves; ' &
+               //"compare waves = 'body'"
+         else
+            words = 'the sphere gains energy, which this model of the plate makes from ' &
+               //"nothing; compare waves = 'body'"
+         end if
+      end function gain
    end function measures_report
 
    !> The level of an impact that is not good, and the measures, in one line

@@ -405,7 +405,7 @@ def tables_table(tables):
     """Errors of impacts with tables of data."""
     lines = [[plates, n, len(column), *map(small, np.quantile(column, (0.5, 0.9, 1.0)))]
              for plates, found in tables.items() for n, column in zip(PER_DECADE, found.T, strict=True)]
-    head = ["plates", "points per decade", "impacts", "median error", "nine of ten within", "all within"]
+    head = ["plates", "points per decade", "impacts", "median error", "nine of ten within", "largest of these"]
     return table(head, lines, {0})
 
 

@@ -73,7 +73,7 @@ def resistance(ratio):
 def test_numbers_that_there_are_not(vcor):
     """Of two spheres, of a rigid plate, without waves."""
     row = numbers(vcor, BEADS)
-    plates = ["thickness_ratio", "plate_wave_number", "needed_extent", "deflection_ratio"]
+    plates = ["thickness_ratio", "bending_loss", "plate_wave_number", "needed_extent", "deflection_ratio"]
     for name in [*plates, "half_space_loss", "rebound_height", "footprint_effect"]:
         assert math.isnan(row[name]), name
     assert row["validity"] == "good"
@@ -82,6 +82,53 @@ def test_numbers_that_there_are_not(vcor):
     rigid = BEADS.replace("material = 'cellulose acetate'\n   waves", "material = 'wall'\n   waves")
     row = numbers(vcor, rigid + "&material name = 'wall', model = 'rigid' /\n")
     assert math.isnan(row["half_space_loss"])
+
+
+def test_plate_that_could_bend(vcor):
+    """Without waves a thickness tells what bending would take, by hand; of the two losses the larger one counts."""
+    still = GLASS.replace("waves    = 'constant'", "waves = 'none'")
+    assert still != GLASS
+    for half, level, cause in (5e-4, "outside", "bending_loss"), (0.1, "caution", "half_space_loss"):
+        row = numbers(vcor, still, "--set", "impact.velocity=3", "--set", f"plate.half_thickness={half}")
+        alpha = math.sqrt(3 * 2500 * (1 - 0.22**2) / 70e9) / (16 * 2500 * half**2)
+        taken = alpha * row["max_force"] ** 2 * row["contact_time"] / (2 * row["initial_energy"])
+        assert row["bending_loss"] == pytest.approx(1 - math.exp(-taken), rel=1e-9)
+        assert row["cor"] == pytest.approx(1.0, abs=1e-7)
+        assert (row["validity"], row["validity_cause"]) == (level, cause)
+    assert math.isnan(numbers(vcor, GLASS)["bending_loss"])
+
+
+def test_energy_from_nothing(vcor):
+    """A plate much lighter than the sphere gives energy by waves that are no solution: never good, and said so."""
+    row = numbers(vcor, GLASS)
+    lost = row["initial_energy"] * (1 - row["resilience"])
+    assert row["energy_loss"] == pytest.approx(lost, rel=1e-9)
+    assert row["energy_loss"] == row["hysteresis_energy"] + row["wave_energy"]
+    frozen = """&impact velocity = 0.012 /
+&sphere shape = 'punch', punch_radius = 7e-10, mass = 1e-10, material = 'soft' /
+&plate material = 'stiff', waves = 'frozen', half_thickness = 7.5e-9 /
+&material name = 'soft', model = 'mittag_leffler', density = 10, poisson_ratio = 0.5, relaxing_modulus = 1.7e7,
+   exponent = 0.8, time = 4e5 /
+&material name = 'stiff', model = 'power_law', density = 4.7e5, poisson_ratio = 0.49,
+   equilibrium_modulus = 1.4e10, coefficient = 4e8, exponent = 0.94 /
+"""
+    row = numbers(vcor, frozen)
+    assert row["cor_sphere"] > 1 and row["energy_loss"] < 0
+    assert (row["validity"], row["validity_cause"]) == ("outside", "energy_loss")
+    assert "gains energy" in vcor("run", "case.nml").out
+    # put down at no speed, a sphere on a fluid sinks, and its weight makes it leave faster than it came
+    row = numbers(vcor, GLASS.replace("waves    = 'constant'", "waves = 'none'"))
+    assert row["cor"] == pytest.approx(1, abs=1e-7) and row["validity_cause"] != "energy_loss"
+
+
+def test_constant_plate_that_is_infinitely_stiff(vcor):
+    """The modulus that a power law has at first makes a plate that does not move: no silent 'none'."""
+    text = SLS.replace("model   = 'sls'", "model   = 'power_law'")
+    lines = [line for line in text.splitlines() if "beta" not in line.split("!")[0]]
+    text = "\n".join(lines).replace("alpha   = 300.0", "exponent = 0.3")
+    text = text.replace("glassy_modulus = 15.0e6", "coefficient = 1e6").replace("waves    = 'relaxing'", "waves = 'constant'")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["infinite", "'relaxing'"])
 
 
 def test_drop_height(vcor):

@@ -118,6 +118,11 @@ contains
          call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
             //'a dashpot: its modulus is 0 and its deflection infinite', &
             about='waves equilibrium_modulus')
+      else if (waves == waves_constant .and. material%glassy() > huge(1.0_wp)) then
+         call raise(error, error_input, 'the plate keeps the modulus that it has at first, ' &
+            //'which for this material is infinite, and would not move; use ' &
+            //"waves = 'relaxing', 'hereditary' or 'body', or 'none' for a half space", &
+            about='waves')
       end if
       if (allocated(error)) return
 

@@ -16,7 +16,7 @@ module vcor_impact_problem
    use vcor_impact_contact, only : contact_modulus_t
    use vcor_impact_law, only : contact_law_t, sphere_factor
    use vcor_impact_plate, only : plate_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    implicit none
    private
@@ -61,7 +61,7 @@ module vcor_impact_problem
       procedure :: dent_at_once
       procedure :: springs_back
       procedure :: inelasticity
-      procedure :: lasting_inelasticity
+      procedure :: inelasticity_at
       procedure :: initial_energy
    end type impact_t
 
@@ -157,7 +157,8 @@ contains
       end if
    end subroutine launch
 
-   !> Largest contact radius of an elastic impact with time scale T
+   !> Largest contact radius of an elastic impact with time scale T: sqrt(R 1.0936 v0 T) for a
+   !> sphere, whose largest indentation is 1.0936 v0 T
    pure function expected_radius(self, time_scale) result(radius)
       class(impact_t), intent(in) :: self
       !> Time scale T [s]
@@ -165,7 +166,7 @@ contains
       !> Radius [m]
       real(wp) :: radius
 
-      radius = self%contact_radius(self%law%depth*self%speed_scale(time_scale)*time_scale)
+      radius = self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
    end function expected_radius
 
    !> Distance covered by the sphere without a contact force, v0 t + g t^2/2
@@ -215,7 +216,7 @@ contains
       force = drag*self%velocity/(1.0_wp + self%plate%alpha(0.0_wp)*drag)
    end function first_force
 
-   !> Contact radius
+   !> Contact radius a = K u'(s)/2: an increment of s acts like a flat punch of this radius
    elemental function contact_radius(self, indentation) result(radius)
       class(impact_t), intent(in) :: self
       !> Indentation [m]
@@ -223,7 +224,7 @@ contains
       !> Radius [m]
       real(wp) :: radius
 
-      radius = self%law%radius(self%factor, indentation)
+      radius = 0.5_wp*self%factor*self%law%slope(indentation)
    end function contact_radius
 
    !> Share of the contact's dent, at an indentation that grows at once, that a layer does not take
@@ -428,8 +429,8 @@ contains
          > rounding*(self%kernel_integral(time) + self%kernel_viscosity())
    end function springs_back
 
-   !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); 0 for a kernel
-   !> that is infinite or zero at t = 0
+   !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); NaN for a kernel
+   !> that is infinite or zero at t = 0, and for a plate that moves but is infinitely stiff then
    pure function inelasticity(self) result(lambda)
       class(impact_t), intent(in) :: self
       !> Parameter [-]
@@ -437,25 +438,26 @@ contains
 
       real(wp) :: firmness
 
-      lambda = 0.0_wp
+      lambda = unset
+      if (self%plate%moves() .and. .not. self%plate%alpha(0.0_wp) > 0.0_wp) return
       firmness = self%factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
          lambda = self%plate%alpha(0.0_wp)*self%mass &
          /self%law%time_scale(self%mass, firmness, self%velocity)
    end function inelasticity
 
-   !> Zener's parameter with alpha after a time and the mean of the kernel up to then: a measure,
-   !> for infinite k(0) too, of how easily the plate yields during a lasting contact
-   pure function lasting_inelasticity(self, time) result(lambda)
+   !> Zener's parameter with the moduli of the contact and the plate at a frequency, for kernels
+   !> that are infinite at t = 0 too
+   pure function inelasticity_at(self, frequency) result(lambda)
       class(impact_t), intent(in) :: self
-      !> Time since first contact [s], > 0
-      real(wp), intent(in) :: time
+      !> Frequency of the storage modulus [rad/s], > 0; the plate is taken at its inverse
+      real(wp), intent(in) :: frequency
       !> Parameter [-]
       real(wp) :: lambda
 
-      lambda = self%plate%alpha_after(time)*self%mass &
-         /self%elastic_time((self%kernel_integral(time) + self%kernel_viscosity())/time)
-   end function lasting_inelasticity
+      lambda = self%plate%alpha_after(1.0_wp/frequency)*self%mass &
+         /self%elastic_time(self%factor*real(self%modulus%dynamic_modulus(frequency), wp))
+   end function inelasticity_at
 
    !> Kinetic energy of the sphere before the impact, m v0^2/2
    pure function initial_energy(self) result(energy)

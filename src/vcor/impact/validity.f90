@@ -62,6 +62,10 @@ module vcor_impact_validity
       threshold_t('mean_pressure', 1.07_wp, 2.8_wp), &
       ! less the wave energy computed: energy lost in reality but not in the model
       threshold_t('half_space_loss', 0.01_wp, 0.1_wp), &
+      ! the same, of a plate that is free to bend; judged is the larger of the two
+      threshold_t('bending_loss', 0.01_wp, 0.1_wp), &
+      ! `gains_energy`, a contradiction: huge if so, which outweighs all others
+      threshold_t('energy_loss', 1.0_wp, 1.0_wp), &
       ! absolute value: dependence of a layer's cor on the footprint, which is a choice
       threshold_t('footprint_effect', 0.01_wp, 0.1_wp)]
 
@@ -192,7 +196,7 @@ contains
       !> Frequency of the storage modulus, pi/t0 [rad/s]
       real(wp), intent(in) :: frequency
 
-      real(wp) :: wave_number, shear_speed
+      real(wp) :: wave_number, shear_speed, alpha
 
       ! neither a rigid plate nor a dashpot has waves
       if (.not. storage > 0.0_wp) return
@@ -205,12 +209,21 @@ contains
          outcome%plate_wave_number = wave_number*around%thickness
          outcome%needed_extent = pi/wave_number
       end if
-      if (around%is_sphere .or. .not. plate%density() > 0.0_wp) return
+      if (.not. plate%density() > 0.0_wp) return
       shear_speed = sqrt(storage/(2.0_wp*(1.0_wp + plate%poisson_ratio())*plate%density()))
       ! no wave in a layer is much faster
       if (around%is_layer) then
          outcome%needed_extent = 0.5_wp*shear_speed*outcome%contact_time
          if (wave_number*outcome%needed_extent > pi) outcome%needed_extent = pi/wave_number
+      end if
+      if (around%is_sphere) return
+      ! Zener's alpha; W = alpha int F^2 dt, of a half sine alpha F^2 t0/2, as the part of a motion
+      ! that the loss itself slows down
+      if (.not. (impact%plate%moves() .or. around%is_layer .or. ieee_is_nan(around%thickness))) then
+         alpha = sqrt(3.0_wp*plate%density()/(storage*plate%plane_strain_factor())) &
+            /(4.0_wp*plate%density()*around%thickness**2)
+         outcome%bending_loss = 1.0_wp - exp(-alpha*outcome%max_force/outcome%initial_energy &
+            *outcome%max_force*outcome%contact_time/2.0_wp)
       end if
       ! int (dF/dt)^2 dt of a half sine is (pi F)^2/(2 t0)
       outcome%half_space_loss = around%resistance/(2.0_wp*pi*plate%density()*shear_speed**3) &
@@ -230,12 +243,24 @@ contains
       ! measures of what a layer computes itself
       character(len=*), parameter :: of_thin_plates(3) = [character(len=17) :: &
          'plate_wave_number', 'deflection_ratio', 'half_space_loss']
+      real(wp) :: thick, bends
       integer :: i
+
+      ! the plate is either thick or bends: of the two losses only the larger one is judged
+      thick = outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy
+      bends = outcome%bending_loss
+      if (.not. (ieee_is_nan(thick) .or. ieee_is_nan(bends))) then
+         if (bends > thick) then
+            thick = none
+         else
+            bends = none
+         end if
+      end if
 
       values = [outcome%contact_ratio, outcome%thickness_ratio, outcome%plate_wave_number, &
          outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
          outcome%mean_pressure/around%yield_strength, &
-         outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy, &
+         thick, bends, merge(huge(thick), none, outcome%gains_energy()), &
          abs(outcome%footprint_effect)]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
       do i = 1, size(thresholds)

@@ -44,7 +44,7 @@ module vcor_sweep_quantity
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
       'end_time came before the force returned to zero', 'a larger solver.end_time; a thicker ' &
-      //'plate where the inelasticity is above 20'), &
+      //'plate where the inelasticity is above 3'), &
       status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
       //'is too light for it (inelasticity above about 5), or the material flows'), &
       status_t(point_invalid, 'invalid', &
@@ -149,6 +149,8 @@ contains
          outcome%hysteresis_energy)
       call list%add('wave_energy', 'W_wave', 'J', 'energy radiated into the plate', &
          outcome%wave_energy)
+      call list%add('energy_loss', 'W', 'J', 'all that the sphere lost, int F dz', &
+         outcome%energy_loss)
       call list%add('initial_energy', 'KE_0', 'J', 'kinetic energy before the impact', &
          outcome%initial_energy)
       call list%add('energy_imbalance', 'dW', 'J', 'what the energy budget misses', &
@@ -162,10 +164,6 @@ contains
       call list%add('cor_error', 'de', '1', 'estimated error of cor', outcome%cor_error)
       call list%add('cor_sphere_error', 'de_a', '1', 'estimated error of cor_sphere', &
          outcome%cor_sphere_error)
-      call list%add('contact_time_error', 'dt0', 's', 'estimated error of contact_time', &
-         outcome%contact_time_error)
-      call list%add('max_force_error', 'dF_max', 'N', 'estimated error of max_force', &
-         outcome%max_force_error)
       call list%add('resilience', 'e_a^2', '1', 'rebound resilience, cor_sphere^2', &
          outcome%resilience)
       call list%add('rebound_height', 'H_1', 'm', 'height of the rebound from drop_height', &
@@ -189,6 +187,8 @@ contains
          outcome%mean_pressure)
       call list%add('half_space_loss', 'W_1/KE_0', '1', &
          'share that waves into a half space carry away', outcome%half_space_loss)
+      call list%add('bending_loss', 'W_b/KE_0', '1', &
+         'share that bending takes, not computed', outcome%bending_loss)
       call list%add('footprint_effect', 'de', '1', &
          'change of cor with a 1.25 times larger footprint', outcome%footprint_effect)
       call list%add('peak_loss_tangent', 'tan(d)_p', '1', 'loss tangent at pi/t0', &
