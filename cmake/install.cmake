@@ -101,8 +101,10 @@ foreach(page IN LISTS vcor_pages)
   install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}" COMPONENT program)
 endforeach()
 add_custom_target(vcor_man ALL DEPENDS ${compressed})
-# So that a build of the program alone (scripts/run.sh) can be installed, too
-add_dependencies(vcor_program vcor_man)
+# All that is installed without its own component, so that a build of this target (scripts/run.sh) can be
+# installed
+add_custom_target(vcor_installed)
+add_dependencies(vcor_installed vcor_program vcor_man ${vcor_libraries_installed})
 
 # Words of the command line for the shells
 install(FILES completion/vcor.bash RENAME vcor

@@ -6,10 +6,13 @@
  *
  * Errors. Every function that can fail returns one of the codes below, and puts code and message
  * into `error`, which may be NULL. The message is the line that the program prints. Nothing is
- * printed, nothing ends the process.
+ * printed, nothing ends the process. A pointer that is NULL where this page does not allow it, and a
+ * number of elements below zero, are VCOR_ERROR_USAGE; the message names the argument. An array without
+ * elements may be NULL. A time or a frequency that is NaN is VCOR_ERROR_INPUT; a value that is NaN makes
+ * its point VCOR_INVALID. No function can detect a pointer to memory that has been released.
  *
  * Memory. What a function hands over as a pointer (a text, an array) is released with free(), a case
- * with vcor_free().
+ * with vcor_free(). Where the memory is too small, the code is VCOR_ERROR_FILE.
  *
  * Threads. All functions may be called from several threads at once, for the same case too; texts
  * are read and checked by one thread at a time, impacts are solved side by side. A library that was
@@ -61,7 +64,7 @@ typedef struct {
 } vcor_error;
 
 typedef struct {
-   char name[256];
+   char name[256];     /* an address that is longer is refused */
    char symbol[16];
    char unit[32];      /* "1" for a pure number, empty for a text */
    char meaning[128];
@@ -73,8 +76,8 @@ typedef struct {
 /* Version of the library */
 const char *vcor_library_version(void);
 
-/* A case from `text`, or from the file `name` if `text` is NULL. `name` stands in messages, and data
- * files that the case names are relative to its folder. What the case says is checked when it is
+/* A case from `text`, or from the file `name` if `text` is NULL. `name`, which is not NULL, stands in
+ * messages, and data files that the case names are relative to its folder. What the case says is checked when it is
  * used, so that vcor_set can complete it. On failure *self is NULL, which all functions refuse. */
 int vcor_read(const char *text, const char *name, vcor_case **self, vcor_error *error);
 
@@ -96,7 +99,7 @@ int vcor_describe(const vcor_case *self, const char *address, vcor_column *colum
 int vcor_case_text(const vcor_case *self, int complete, char **text,
                    vcor_error *error);
 
-/* Column `index`, from 0, of a table; returns 0 if there is none, 1 otherwise */
+/* Column `index`, from 0, of a table; returns 0 if there is none or `column` is NULL, 1 otherwise */
 int vcor_column_of(int table, int index, vcor_column *column);
 
 /* Parameter `index`, from 0, that the &sweep groups of the case vary, slowest first: its address is
@@ -109,12 +112,13 @@ int vcor_axis(const vcor_case *self, int index, vcor_column *column, int *n, dou
  *   values   n rows of m numbers: values[i*m + j] at addresses[j] in point i
  *   columns  names of k columns of the summary
  *   results  n rows of k numbers, nan where there is none; `status` and other texts by their number
- *   threads  threads to use, 0: as many as there are cores
+ *   threads  threads to use, at most 1024; 0: as many as there are cores
  *
  * With m = 0 and n = 1 the case itself is solved, and an impact without a result is an error. With
  * m > 0 such a point has a status, and error->message says what the matter is, with the number of
  * the first such point counted from 1, while the code is VCOR_OK. One call for many points takes half
- * as long as a call for each, and a twentieth of vcor_set before each: that checks the whole case. If the case has &sweep groups, their addresses must be among those that are given. */
+ * as long as a call for each, and a twentieth of vcor_set before each: that checks the whole case. If
+ * the case has &sweep groups, their addresses must be among those that are given. */
 int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                int k, const char *const *columns, double *results, int threads, vcor_error *error);
 

@@ -34,7 +34,7 @@ if ! is_built; then
    step "set-up" "$top/scripts/setup.sh"
    cd "$top"
    step "release build in $build (a minute or two the first time)" sh -c \
-      "cmake --preset release && cmake --build --preset release --target vcor_program"
+      "cmake --preset release && cmake --build --preset release --target vcor_installed"
    cd "$OLDPWD"
    mv "$stamp.new" "$stamp"
 fi

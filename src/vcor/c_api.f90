@@ -4,9 +4,12 @@
 !> 12 keeps the length of a text returned by a function in static storage. Impacts are solved
 !> outside.
 module vcor_c_api
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
-      c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
+      c_loc, c_null_char, c_null_ptr, c_ptr
+   use vcor_c_api_values, only : array_at, c_column_t, c_numbers, c_text, demand, get_array, &
+      new_column, put_column, put_copy, put_count, put_error, put_pointer, put_text, refuse_long, &
+      report_error
    use vcor_case_address, only : material_names, resolve, swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group
@@ -36,36 +39,9 @@ module vcor_c_api
    implicit none
    private
 
-   public :: c_error_t, c_column_t, c_text, c_numbers, report_error
    public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
       vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
       vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
-
-   !> `vcor_error`
-   type, bind(c) :: c_error_t
-      !> 0 or one of the `error_*` constants
-      integer(c_int) :: code
-      !> One line, ended by a null
-      character(kind=c_char) :: message(2048)
-   end type c_error_t
-
-   !> `vcor_column`
-   type, bind(c) :: c_column_t
-      !> Name, or address of a swept key
-      character(kind=c_char) :: name(256) = c_null_char
-      !> Symbol of the paper
-      character(kind=c_char) :: symbol(16) = c_null_char
-      !> Unit
-      character(kind=c_char) :: unit(32) = c_null_char
-      !> Meaning
-      character(kind=c_char) :: meaning(128) = c_null_char
-      !> Words for which its numbers stand
-      character(kind=c_char) :: labels(512) = c_null_char
-      !> Number of the first word
-      integer(c_int) :: first = 0
-      !> 1 if its numbers are whole
-      integer(c_int) :: is_whole = 0
-   end type c_column_t
 
    !> Target of a `vcor_case`
    type :: handle_t
@@ -87,14 +63,6 @@ module vcor_c_api
    integer(c_int) :: process = 0
 
    interface
-      !> Allocate memory that the caller releases with free()
-      function malloc(size) bind(c, name='malloc') result(room)
-         import :: c_ptr, c_size_t
-         !> Bytes
-         integer(c_size_t), value :: size
-         type(c_ptr) :: room
-      end function malloc
-
       !> Number of the process
       function getpid() bind(c, name='getpid') result(number)
          import :: c_int
@@ -113,28 +81,30 @@ contains
 
    !> Read a case from text or from a file
    function vcor_read(text, name, self, error) bind(c) result(code)
-      type(c_ptr), value :: text, name
-      type(c_ptr), intent(out) :: self
-      type(c_ptr), value :: error
+      type(c_ptr), value :: text, name, self, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
 
-      self = c_null_ptr
+      call put_pointer(self, c_null_ptr)
+      call demand(name, 'name', trouble)
+      call demand(self, 'self', trouble)
+      if (.not. allocated(trouble)) then
 !$omp critical (vcor_c_api)
-      allocate (handle)
-      if (c_associated(text)) then
-         call read_case_text(handle%case, fortran(text), fortran(name), trouble)
-      else
-         call read_case(handle%case, fortran(name), trouble)
-      end if
-      if (allocated(trouble)) then
-         deallocate (handle)
-      else
-         self = c_loc(handle)
-      end if
+         allocate (handle)
+         if (c_associated(text)) then
+            call read_case_text(handle%case, fortran(text), fortran(name), trouble)
+         else
+            call read_case(handle%case, fortran(name), trouble)
+         end if
+         if (allocated(trouble)) then
+            deallocate (handle)
+         else
+            call put_pointer(self, c_loc(handle))
+         end if
 !$omp end critical (vcor_c_api)
+      end if
       code = report_error(trouble, error)
    end function vcor_read
 
@@ -160,6 +130,8 @@ contains
       character(len=:), allocatable :: message
 
       call open_case(self, handle, trouble)
+      call demand(address, 'address', trouble)
+      call demand(value, 'value', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) then
          call override(handle%case, fortran(address)//'='//fortran(value), trouble)
@@ -175,9 +147,7 @@ contains
 
    !> Get the value at an address
    function vcor_get(self, address, value, error) bind(c) result(code)
-      type(c_ptr), value :: self, address
-      type(c_ptr), intent(out) :: value
-      type(c_ptr), value :: error
+      type(c_ptr), value :: self, address, value, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -185,17 +155,19 @@ contains
       type(address_t) :: place
       type(entry_t) :: entry
 
-      value = c_null_ptr
+      call put_pointer(value, c_null_ptr)
       call open_case(self, handle, trouble)
+      call demand(address, 'address', trouble)
+      call demand(value, 'value', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) &
          call find_place(handle%case, fortran(address), place, trouble)
       if (.not. allocated(trouble)) then
          entry = handle%case%entry(place)
          if (place%element > 0) then
-            value = c_text(real_text(entry%number))
+            call put_copy(value, c_text(real_text(entry%number)), trouble)
          else if (entry%present) then
-            value = c_text(value_text(catalogue(place%row), entry))
+            call put_copy(value, c_text(value_text(catalogue(place%row), entry)), trouble)
          end if
       end if
 !$omp end critical (vcor_c_api)
@@ -204,22 +176,27 @@ contains
 
    !> Get path, unit and meaning of an address
    function vcor_describe(self, address, column, error) bind(c) result(code)
-      type(c_ptr), value :: self, address
-      type(c_column_t), intent(out) :: column
-      type(c_ptr), value :: error
+      type(c_ptr), value :: self, address, column, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
       type(address_t) :: place
+      character(len=:), allocatable :: path
 
+      call put_column(column, c_column_t())
       call open_case(self, handle, trouble)
+      call demand(address, 'address', trouble)
+      call demand(column, 'column', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) &
          call find_place(handle%case, fortran(address), place, trouble)
       if (.not. allocated(trouble)) then
+         path = handle%case%path(place)
          associate (key => catalogue(max(place%row, handle%case%row(place))))
-            call put_column(column, handle%case%path(place), key%unit, key%meaning)
+            call refuse_long(path, trouble)
+            if (.not. allocated(trouble)) &
+               call put_column(column, new_column(path, key%unit, key%meaning))
          end associate
       end if
 !$omp end critical (vcor_c_api)
@@ -230,18 +207,19 @@ contains
    function vcor_case_text(self, complete, text, error) bind(c) result(code)
       type(c_ptr), value :: self
       integer(c_int), value :: complete
-      type(c_ptr), intent(out) :: text
-      type(c_ptr), value :: error
+      type(c_ptr), value :: text, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
 
-      text = c_null_ptr
+      call put_pointer(text, c_null_ptr)
       call open_case(self, handle, trouble)
+      call demand(text, 'text', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) call validate(handle%case, trouble)
-      if (.not. allocated(trouble)) text = c_text(case_text(handle%case, complete=complete /= 0))
+      if (.not. allocated(trouble)) &
+         call put_copy(text, c_text(case_text(handle%case, complete=complete /= 0)), trouble)
 !$omp end critical (vcor_c_api)
       code = report_error(trouble, error)
    end function vcor_case_text
@@ -249,10 +227,11 @@ contains
    !> Get the description of a column of a table
    function vcor_column_of(table, index, column) bind(c) result(found)
       integer(c_int), value :: table, index
-      type(c_column_t), intent(out) :: column
+      type(c_ptr), value :: column
       integer(c_int) :: found
 
       type(quantity_t), allocatable :: list(:)
+      type(c_column_t) :: made
       integer :: i
 
 !$omp critical (vcor_c_api)
@@ -267,17 +246,19 @@ contains
       case default
          allocate (list(0))
       end select
-      found = merge(1_c_int, 0_c_int, index >= 0 .and. index < size(list))
-      if (found > 0) then
+      found = 0
+      if (c_associated(column) .and. index >= 0 .and. index < size(list)) then
+         found = 1
          associate (quantity => list(index + 1))
-            call put_column(column, quantity%name, quantity%unit, quantity%meaning)
-            if (quantity%labels /= '') call put_text('', column%unit)
-            call put_text(trim(quantity%symbol), column%symbol)
-            call put_text(trim(adjustl(quantity%labels)), column%labels)
-            column%first = quantity%first
-            column%is_whole = merge(1_c_int, 0_c_int, quantity%is_whole)
+            made = new_column(quantity%name, quantity%unit, quantity%meaning)
+            if (quantity%labels /= '') call put_text('', made%unit)
+            call put_text(trim(quantity%symbol), made%symbol)
+            call put_text(trim(adjustl(quantity%labels)), made%labels)
+            made%first = quantity%first
+            made%is_whole = merge(1_c_int, 0_c_int, quantity%is_whole)
          end associate
       end if
+      call put_column(column, made)
 !$omp end critical (vcor_c_api)
    end function vcor_column_of
 
@@ -285,28 +266,33 @@ contains
    function vcor_axis(self, index, column, n, values, error) bind(c) result(code)
       type(c_ptr), value :: self
       integer(c_int), value :: index
-      type(c_column_t), intent(out) :: column
-      integer(c_int), intent(out) :: n
-      type(c_ptr), intent(out) :: values
-      type(c_ptr), value :: error
+      type(c_ptr), value :: column, n, values, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
       type(grid_t) :: grid
 
-      n = 0
-      values = c_null_ptr
+      call put_column(column, c_column_t())
+      call put_count(n, 0)
+      call put_pointer(values, c_null_ptr)
       call open_case(self, handle, trouble)
+      call demand(column, 'column', trouble)
+      call demand(n, 'n', trouble)
+      call demand(values, 'values', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) call validate(handle%case, trouble)
       if (.not. allocated(trouble)) call new_grid(handle%case, grid, trouble)
       if (.not. allocated(trouble)) then
          if (index >= 0 .and. index < size(grid%axes)) then
             associate (axis => grid%axes(index + 1))
-               call put_column(column, axis%name, axis%unit, axis%meaning)
-               n = size(axis%values)
-               values = c_numbers(axis%values)
+               call refuse_long(axis%name, trouble)
+               if (.not. allocated(trouble)) &
+                  call put_copy(values, c_numbers(axis%values), trouble)
+               if (.not. allocated(trouble)) then
+                  call put_column(column, new_column(axis%name, axis%unit, axis%meaning))
+                  call put_count(n, size(axis%values))
+               end if
             end associate
          end if
       end if
@@ -315,44 +301,91 @@ contains
    end function vcor_axis
 
    !> Solve points
-   function vcor_solve(self, m, addresses, n, values, k, columns, results, threads, error) &
-      bind(c) result(code)
+   function vcor_solve(self, m, address_list, n, value_table, k, column_list, result_table, &
+      threads, error) bind(c) result(code)
       type(c_ptr), value :: self
       integer(c_int), value :: m
-      type(c_ptr), intent(in) :: addresses(m)
+      type(c_ptr), value :: address_list
       integer(c_int), value :: n
-      real(c_double), intent(in) :: values(m, n)
+      type(c_ptr), value :: value_table
       integer(c_int), value :: k
-      type(c_ptr), intent(in) :: columns(k)
-      real(c_double), intent(inout) :: results(k, n)
+      type(c_ptr), value :: column_list, result_table
       integer(c_int), value :: threads
       type(c_ptr), value :: error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
+      type(c_ptr), pointer :: addresses(:), columns(:)
+      real(c_double), pointer :: values(:, :), results(:, :)
+      character(len=:), allocatable :: remark
+      integer :: i
+
+      call open_case(self, handle, trouble)
+      call check_counts(int(m), int(n), int(k), int(threads), trouble)
+      if (m > 0) call demand(address_list, 'addresses', trouble)
+      if (m > 0 .and. n > 0) call demand(value_table, 'values', trouble)
+      if (k > 0) call demand(column_list, 'columns', trouble)
+      if (k > 0 .and. n > 0) call demand(result_table, 'results', trouble)
+      if (.not. allocated(trouble)) then
+         call c_f_pointer(array_at(address_list, m), addresses, [m])
+         call c_f_pointer(array_at(column_list, k), columns, [k])
+         do i = 1, m
+            call demand(addresses(i), 'addresses[i]', trouble)
+         end do
+         do i = 1, k
+            call demand(columns(i), 'columns[i]', trouble)
+         end do
+      end if
+      if (.not. allocated(trouble)) then
+         call c_f_pointer(array_at(value_table, min(m, n)), values, [m, n])
+         call c_f_pointer(array_at(result_table, min(k, n)), results, [k, n])
+         call solve_table(handle, addresses, values, columns, int(threads), results, remark, trouble)
+      end if
+      code = report_error(trouble, error)
+      if (allocated(remark)) call put_error(error, code, remark)
+   end function vcor_solve
+
+   !> Solve the points of a table
+   subroutine solve_table(handle, addresses, values, columns, threads, results, remark, error)
+      type(handle_t), intent(inout) :: handle
+      !> Addresses with values for each point, shape (m)
+      type(c_ptr), intent(in) :: addresses(:)
+      !> Values, shape (m, n)
+      real(wp), intent(in) :: values(:, :)
+      !> Names of columns of the summary, shape (k)
+      type(c_ptr), intent(in) :: columns(:)
+      !> Number of threads, 0: the default
+      integer, intent(in) :: threads
+      !> Values of the columns, shape (k, n); NaN where there is none
+      real(wp), intent(out) :: results(:, :)
+      !> How many points have no result and why; unallocated if all have one
+      character(len=:), allocatable, intent(out) :: remark
+      !> Error of a case without addresses that has no result, or of the case itself; unallocated on
+      !> success
+      type(error_t), allocatable, intent(out) :: error
+
       type(sweep_t) :: sweep
       type(summary_t) :: summary
       type(failures_t) :: failures
+      integer, allocatable :: places(:)
       integer(c_int) :: current
-      integer :: places(k), team, i
+      integer :: n, team, i
 
+      n = size(results, 2)
       results = ieee_value(1.0_wp, ieee_quiet_nan)
-      call open_case(self, handle, trouble)
-      if (.not. allocated(trouble) .and. min(m, n, k) < 0) call raise(trouble, error_usage, &
-         'found a negative number of addresses, points or columns')
+      allocate (places(size(columns)))
 !$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) call new_summary(summary, n, trouble, &
-         max(1, int(threads)))
-      do i = 1, k
-         if (allocated(trouble)) exit
+      call new_summary(summary, n, error, max(1, threads))
+      do i = 1, size(columns)
+         if (allocated(error)) exit
          places(i) = findloc(summary%quantities%name == fortran(columns(i)), .true., dim=1)
-         if (places(i) == 0) call raise(trouble, error_usage, "unknown name '" &
+         if (places(i) == 0) call raise(error, error_usage, "unknown name '" &
             //shortened(fortran(columns(i)))//"'; " &
             //suggestion(fortran(columns(i)), quantity_names()))
       end do
-      if (.not. allocated(trouble) .and. n > 0) call build(handle, addresses, values, trouble)
-      if (.not. allocated(trouble) .and. n > 0) then
+      if (.not. allocated(error) .and. n > 0) call build(handle, addresses, values, error)
+      if (.not. allocated(error) .and. n > 0) then
          sweep = handle%sweep
          do i = 1, size(sweep%grid%axes)
             associate (axis => sweep%grid%axes(i))
@@ -360,46 +393,62 @@ contains
             end associate
          end do
       end if
-      team = max(1, min(int(threads), most_threads))
+      team = max(1, threads)
       if (threads == 0) team = default_threads()
       ! a child of fork does not have the threads of its parent
       current = getpid()
       if (process /= 0 .and. process /= current) team = 1
       if (process == 0 .and. team > 1 .and. n > 1) process = current
 !$omp end critical (vcor_c_api)
-      if (.not. allocated(trouble) .and. n > 0) then
-         call solve_points(sweep, new_part(n, 1, 1), team, summary, failures, trouble)
-         do i = 1, k
-            if (places(i) > size(summary%values)) then
-               results(i, :) = real(summary%status, wp)
-            else if (allocated(summary%values(places(i))%reals)) then
-               results(i, :) = summary%values(places(i))%reals
-            else
-               results(i, :) = real(summary%values(places(i))%integers, wp)
-            end if
-         end do
-      end if
+      if (allocated(error) .or. n == 0) return
+      call solve_points(sweep, new_part(n, 1, 1), team, summary, failures, error)
+      do i = 1, size(columns)
+         if (places(i) > size(summary%values)) then
+            results(i, :) = real(summary%status, wp)
+         else if (allocated(summary%values(places(i))%reals)) then
+            results(i, :) = summary%values(places(i))%reals
+         else
+            results(i, :) = real(summary%values(places(i))%integers, wp)
+         end if
+      end do
+      if (failures%count == 0) return
 !$omp critical (vcor_c_api)
-      if (failures%count > 0 .and. m == 0) then
-         call raise(trouble, merge(error_input, error_numerical, &
-            summary%status(1) == point_invalid), handle%case%source//': ' &
-            //trim(failures%reason(1)%message))
-      else if (failures%count > 0) then
-         call put_error(error, 0_c_int, integer_text(failures%count)//' of '//integer_text(int(n)) &
+      if (size(addresses) == 0) then
+         call raise(error, merge(error_input, error_numerical, summary%status(1) == point_invalid), &
+            handle%case%source//': '//trim(failures%reason(1)%message))
+      else
+         remark = integer_text(failures%count)//' of '//integer_text(n) &
             //' points have no result, the first is point ' &
-            //integer_text(failures%reason(1)%first)//': '//trim(failures%reason(1)%message))
+            //integer_text(failures%reason(1)%first)//': '//trim(failures%reason(1)%message)
       end if
 !$omp end critical (vcor_c_api)
-      code = 0
-      if (allocated(trouble) .or. failures%count == 0) code = report_error(trouble, error)
-   end function vcor_solve
+   end subroutine solve_table
+
+   !> Check the numbers of a call of `vcor_solve`
+   subroutine check_counts(m, n, k, threads, error)
+      !> Numbers of addresses, points, columns and threads
+      integer, intent(in) :: m, n, k, threads
+      !> An earlier error, which is kept, or one of code `error_usage`; unallocated on success
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (allocated(error)) return
+      if (min(m, n, k) < 0) then
+         call raise(error, error_usage, &
+            'found a negative number of addresses, points or columns')
+      else if (m == 0 .and. n > 1) then
+         call raise(error, error_usage, 'found several points without an address, expected one')
+      else if (threads < 0 .or. threads > most_threads) then
+!$omp critical (vcor_c_api)
+         call raise(error, error_usage, 'found '//integer_text(threads)//' threads, expected 1 to ' &
+            //integer_text(most_threads)//', or 0 for as many as there are cores')
+!$omp end critical (vcor_c_api)
+      end if
+   end subroutine check_counts
 
    !> Compute the history of a single impact
    function vcor_history(self, rows, values, error) bind(c) result(code)
       type(c_ptr), value :: self
-      integer(c_int), intent(out) :: rows
-      type(c_ptr), intent(out) :: values
-      type(c_ptr), value :: error
+      type(c_ptr), value :: rows, values, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -411,9 +460,11 @@ contains
       real(wp), allocatable :: state(:, :)
       real(wp) :: nothing(0, 1)
 
-      rows = 0
-      values = c_null_ptr
+      call put_count(rows, 0)
+      call put_pointer(values, c_null_ptr)
       call open_case(self, handle, trouble)
+      call demand(rows, 'rows', trouble)
+      call demand(values, 'values', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
       if (.not. allocated(trouble)) sweep = handle%sweep
@@ -426,8 +477,8 @@ contains
 !$omp end critical (vcor_c_api)
          else
             call worker%trajectory%sample(history_steps, state)
-            rows = size(state, 2)
-            values = c_numbers(reshape(state, [size(state)]))
+            call put_copy(values, c_numbers(reshape(state, [size(state)])), trouble)
+            if (.not. allocated(trouble)) call put_count(rows, size(state, 2))
          end if
       end if
       code = report_error(trouble, error)
@@ -437,18 +488,30 @@ contains
    function vcor_relaxation(self, material, n, times, moduli, error) bind(c) result(code)
       type(c_ptr), value :: self, material
       integer(c_int), value :: n
-      real(c_double), intent(in) :: times(n)
-      real(c_double), intent(inout) :: moduli(n)
-      type(c_ptr), value :: error
+      type(c_ptr), value :: times, moduli, error
       integer(c_int) :: code
 
       class(material_t), allocatable :: body
       type(error_t), allocatable :: trouble
+      real(c_double), pointer :: t(:), modulus(:)
+      integer :: i
 
       call find_body(self, material, body, trouble)
-      if (.not. allocated(trouble) .and. any(times < 0.0_wp)) &
-         call raise(trouble, error_input, 'found a negative time, expected times >= 0 [s]')
-      if (.not. allocated(trouble)) moduli = body%relaxation(times)
+      call get_array(n, times, 'times', t, trouble)
+      call get_array(n, moduli, 'moduli', modulus, trouble)
+      if (.not. allocated(trouble)) then
+         if (any(ieee_is_nan(t))) call raise(trouble, error_input, &
+            'found a time that is not a number, expected times >= 0 [s]')
+      end if
+      if (.not. allocated(trouble)) then
+         if (any(t < 0.0_wp)) &
+            call raise(trouble, error_input, 'found a negative time, expected times >= 0 [s]')
+      end if
+      if (.not. allocated(trouble)) then
+         do i = 1, n
+            modulus(i) = body%relaxation(t(i))
+         end do
+      end if
       code = report_error(trouble, error)
    end function vcor_relaxation
 
@@ -457,48 +520,55 @@ contains
       result(code)
       type(c_ptr), value :: self, material
       integer(c_int), value :: n
-      real(c_double), intent(in) :: frequencies(n)
-      real(c_double), intent(inout) :: storage(n)
-      real(c_double), intent(inout) :: loss(n)
-      type(c_ptr), value :: error
+      type(c_ptr), value :: frequencies, storage, loss, error
       integer(c_int) :: code
 
       class(material_t), allocatable :: body
       type(error_t), allocatable :: trouble
-      complex(wp) :: modulus(n)
+      real(c_double), pointer :: omega(:), real_part(:), imaginary_part(:)
+      complex(wp) :: modulus
+      integer :: i
 
       call find_body(self, material, body, trouble)
-      if (.not. allocated(trouble) .and. any(frequencies < 0.0_wp &
-          .or. frequencies > huge(1.0_wp))) call raise(trouble, error_input, &
-         'found a negative frequency or an infinite one, expected them >= 0 [rad/s]')
+      call get_array(n, frequencies, 'frequencies', omega, trouble)
+      call get_array(n, storage, 'storage', real_part, trouble)
+      call get_array(n, loss, 'loss', imaginary_part, trouble)
       if (.not. allocated(trouble)) then
-         modulus = body%complex_modulus(cmplx(0.0_wp, frequencies, wp))
-         storage = real(modulus, wp)
-         loss = aimag(modulus)
+         if (.not. all(ieee_is_finite(omega))) call raise(trouble, error_input, &
+            'found a frequency that is not a number or infinite, expected them >= 0 [rad/s]')
+      end if
+      if (.not. allocated(trouble)) then
+         if (any(omega < 0.0_wp)) call raise(trouble, error_input, &
+            'found a negative frequency, expected them >= 0 [rad/s]')
+      end if
+      if (.not. allocated(trouble)) then
+         do i = 1, n
+            modulus = body%complex_modulus(cmplx(0.0_wp, omega(i), wp))
+            real_part(i) = real(modulus, wp)
+            imaginary_part(i) = aimag(modulus)
+         end do
       end if
       code = report_error(trouble, error)
    end function vcor_complex_modulus
 
    !> Get the factor by which the temperature of the impact multiplies all times of a material
    function vcor_time_factor(self, material, factor, error) bind(c) result(code)
-      type(c_ptr), value :: self, material
-      real(c_double), intent(inout) :: factor
-      type(c_ptr), value :: error
+      type(c_ptr), value :: self, material, factor, error
       integer(c_int) :: code
 
       class(material_t), allocatable :: body
       type(error_t), allocatable :: trouble
+      real(c_double), pointer :: place(:)
 
       call find_body(self, material, body, trouble)
-      if (.not. allocated(trouble)) factor = body%time_factor
+      call get_array(1_c_int, factor, 'factor', place, trouble)
+      if (.not. allocated(trouble)) place = body%time_factor
       code = report_error(trouble, error)
    end function vcor_time_factor
 
    !> Solve the case by all methods
    function vcor_verify(self, results, error) bind(c) result(code)
-      type(c_ptr), value :: self
-      real(c_double), intent(inout) :: results(4, size(compared_names))
-      type(c_ptr), value :: error
+      type(c_ptr), value :: self, results, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -507,10 +577,16 @@ contains
       type(comparison_t) :: comparison
       type(c_ptr) :: none(0)
       real(wp) :: nothing(0, 1)
+      real(c_double), pointer :: table(:, :)
       integer :: i
 
-      results = ieee_value(1.0_wp, ieee_quiet_nan)
+      nullify (table)
       call open_case(self, handle, trouble)
+      call demand(results, 'results', trouble)
+      if (.not. allocated(trouble)) then
+         call c_f_pointer(results, table, [4, size(compared_names)])
+         table = ieee_value(1.0_wp, ieee_quiet_nan)
+      end if
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
       if (.not. allocated(trouble)) then
@@ -525,9 +601,9 @@ contains
          do i = 1, size(compared_names)
             if (.not. comparison%separated) exit
             associate (compared => comparison%compared(i))
-               results(:, i) = [compared%best, compared%value(attempt_first), &
+               table(:, i) = [compared%best, compared%value(attempt_first), &
                   compared%direct%limit, real(compared%digits, wp)]
-               if (.not. comparison%two_methods) results(2, i) = ieee_value(1.0_wp, ieee_quiet_nan)
+               if (.not. comparison%two_methods) table(2, i) = ieee_value(1.0_wp, ieee_quiet_nan)
             end associate
          end do
          if (allocated(comparison%objection)) call raise(trouble, error_numerical, &
@@ -639,6 +715,7 @@ contains
       integer :: item
 
       call open_case(self, handle, error)
+      call demand(name, 'material', error)
       if (allocated(error)) return
 !$omp critical (vcor_c_api)
       case = handle%case
@@ -668,93 +745,5 @@ contains
          call raise(error, error_usage, 'the case is NULL: vcor_read has not made one')
       end if
    end subroutine open_case
-
-   !> Report an error to the caller, and return its code
-   function report_error(trouble, error) result(code)
-      !> The error, unallocated for success
-      type(error_t), allocatable, intent(in) :: trouble
-      !> `vcor_error`, or null
-      type(c_ptr), intent(in) :: error
-      !> 0 on success, else the code of the error
-      integer(c_int) :: code
-
-      code = 0
-      if (allocated(trouble)) then
-         code = int(trouble%code, c_int)
-         call put_error(error, code, trouble%message)
-      else
-         call put_error(error, code, '')
-      end if
-   end function report_error
-
-   !> Report a code and a line to the caller
-   subroutine put_error(error, code, message)
-      !> `vcor_error`, or null
-      type(c_ptr), intent(in) :: error
-      integer(c_int), intent(in) :: code
-      !> What is wrong, or a remark
-      character(len=*), intent(in) :: message
-
-      type(c_error_t), pointer :: to
-
-      if (.not. c_associated(error)) return
-      call c_f_pointer(error, to)
-      to%code = code
-      call put_text(message, to%message)
-   end subroutine put_error
-
-   !> Set name, unit and meaning of a column
-   pure subroutine put_column(column, name, unit, meaning)
-      !> The column; other components are empty
-      type(c_column_t), intent(out) :: column
-      character(len=*), intent(in) :: name, unit, meaning
-
-      call put_text(trim(name), column%name)
-      call put_text(trim(unit), column%unit)
-      if (unit == '') call put_text('1', column%unit)
-      call put_text(trim(meaning), column%meaning)
-   end subroutine put_column
-
-   !> Copy a text into a C array, cut if it does not fit
-   pure subroutine put_text(text, room)
-      character(len=*), intent(in) :: text
-      character(kind=c_char), intent(inout) :: room(:)
-
-      integer :: i, n
-
-      n = min(len(text), size(room) - 1)
-      do i = 1, n
-         room(i) = text(i:i)
-      end do
-      room(n + 1) = c_null_char
-   end subroutine put_text
-
-   !> Copy of a text for C, to be released with free()
-   function c_text(text) result(copy)
-      character(len=*), intent(in) :: text
-      !> The copy; null if there is no memory
-      type(c_ptr) :: copy
-
-      character(kind=c_char), pointer :: letters(:)
-
-      copy = malloc(int(len(text) + 1, c_size_t))
-      if (.not. c_associated(copy)) return
-      call c_f_pointer(copy, letters, [len(text) + 1])
-      call put_text(text, letters)
-   end function c_text
-
-   !> Copy of numbers for C, to be released with free()
-   function c_numbers(numbers) result(copy)
-      real(wp), intent(in) :: numbers(:)
-      !> The copy; null if there is no memory
-      type(c_ptr) :: copy
-
-      real(c_double), pointer :: room(:)
-
-      copy = malloc(int(max(1, size(numbers)), c_size_t)*storage_size(numbers)/8)
-      if (.not. c_associated(copy)) return
-      call c_f_pointer(copy, room, [size(numbers)])
-      room = numbers
-   end function c_numbers
 
 end module vcor_c_api

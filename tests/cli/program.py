@@ -34,6 +34,8 @@ NAMES = [
     "loss_tangent",
     "cor_error",
     "cor_sphere_error",
+    "contact_time_error",
+    "max_force_error",
     "resilience",
     "rebound_height",
     "contact_radius",

@@ -42,6 +42,23 @@ def test_ive_and_direct(vcor, path):
         assert float(ive[name]) == pytest.approx(float(other[name]), rel=1e-5), name
 
 
+@pytest.mark.parametrize("scheme", ["product", "adams_bashforth"])
+@pytest.mark.parametrize("model", ["sls", "prony"])
+def test_direct_states_errors_of_time_and_force(vcor, model, scheme):
+    """The errors of contact time and largest force, in seconds and newtons, cover the true ones and
+    are not vague; with a step as with an accuracy."""
+    vcor.write(case_text(model))
+    exact = vcor.numbers("case.nml", "--set", "solver.accuracy=1e-10")
+    words = ["--set", "solver.method=direct", "--set", f"solver.scheme={scheme}"]
+    step = float(exact["contact_time"]) / 2000
+    for more in ([], ["--set", f"solver.time_step={step}"]):
+        found = vcor.numbers("case.nml", *words, *more)
+        for name in ("contact_time", "max_force"):
+            value, stated = float(exact[name]), float(found[f"{name}_error"])
+            assert abs(float(found[name]) - value) <= 3 * stated, name
+            assert 0 < stated <= 0.02 * value, name
+
+
 @pytest.mark.parametrize("accuracy", ["1e-3", "1e-5", "1e-7"])
 @pytest.mark.parametrize("model", ["prony", "sls", "power_law", "cerf"])
 def test_accuracy_is_reached(vcor, model, accuracy):

@@ -74,10 +74,15 @@ def test_full_precision(vcor, model):
                 assert values[name] == row[name] == stored.decode()
             else:
                 numbers = [float(values[name]), stored, float(row[name])]
-                # a sphere that is not dropped has no height of rebound, a thin plate no footprint
-                if name in ("rebound_height", "bending_loss", "footprint_effect") or (
-                    name == "inelasticity" and model == "power_law"
-                ):
+                # a sphere that is not dropped has no height of rebound, a thin plate no footprint, one
+                # that bends loses nothing else by that, and ive states no errors of time and force
+                if name in (
+                    "rebound_height",
+                    "bending_loss",
+                    "footprint_effect",
+                    "contact_time_error",
+                    "max_force_error",
+                ) or (name == "inelasticity" and model == "power_law"):
                     assert all(map(math.isnan, numbers))
                 else:
                     assert numbers[0] == numbers[1] == numbers[2] and math.isfinite(stored), name

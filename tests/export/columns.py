@@ -18,6 +18,8 @@ SUMMARY = {
     "loss_tangent": "1",
     "cor_error": "1",
     "cor_sphere_error": "1",
+    "contact_time_error": "s",
+    "max_force_error": "N",
     "resilience": "1",
     "rebound_height": "m",
     "contact_radius": "m",

@@ -88,6 +88,18 @@ def test_everything_is_there(prefix):
     assert any(name.startswith("include/vcor/") and name.endswith("/vcor.mod") for name in files)
 
 
+def test_the_build_of_run_sh_can_be_installed(build, prefix):
+    """scripts/run.sh builds one target: all files that are built to be installed belong to it."""
+    target = "vcor_installed"
+    assert f"--target {target}" in (ROOT / "scripts/run.sh").read_text()
+    commands = run("ninja", "-C", build, "-t", "commands", target)
+    built = [path for path in prefix.rglob("*") if re.search(r"/bin/\w+$|\.(a|so[.0-9]*|gz)$", str(path))]
+    assert {"vcor", "libvcor.a", "libvcor.so", "libvcor_core.a", "vcor.1.gz"} <= {path.name for path in built}
+    for path in built:
+        name = path.resolve().name.removesuffix(".gz")
+        assert re.search(rf"\b{re.escape(name)}\b", commands), path
+
+
 def test_completion_is_where_shells_look(prefix, packages):
     for name in ["bash-completion/completions/vcor", "zsh/site-functions/_vcor", "fish/vendor_completions.d/vcor.fish"]:
         assert (prefix / "share" / name).is_file()

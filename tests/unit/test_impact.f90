@@ -4,7 +4,7 @@ program test_impact
       ieee_value
    use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
-   use vcor_impact_law, only : contact_law_t, new_contact_law
+   use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
@@ -79,7 +79,7 @@ contains
       ! contact times of n = 1, half a period of a spring, and of n = 2
       real(wp), parameter :: exponent(2) = [1.0_wp, 2.0_wp]
       real(wp), parameter :: guess(5) = [0.0_wp, -1.0e-300_wp, 1.0e-12_wp, -3.9_wp, 1.0e6_wp]
-      real(wp) :: duration(2), root(5), found, secant
+      real(wp) :: duration(2), root(5), slope(5), found
       type(contact_law_t) :: hertz, built, law
       type(error_t), allocatable :: error
       integer :: i
@@ -93,15 +93,21 @@ contains
          *1.25_wp**0.4_wp, rounding, "Hertz: contact time in units of T")
       call check(.not. any(abs(hertz%u(s) - s*sqrt(abs(s))) > 0.0_wp), "u = s sqrt(|s|)")
       call check(.not. any(abs(hertz%slope(s) - 1.5_wp*sqrt(abs(s))) > 0.0_wp), "slope of u")
-      call hertz%secants(size(s), s, root)
+      call hertz%evaluate(size(s), s, root, slope)
       call check(.not. any(abs(root - sqrt(abs(s))) > 0.0_wp), "u/s of many values")
+      call check(.not. any(abs(slope - hertz%slope(s)) > 0.0_wp), "du/ds of many values")
+      call check_close(hertz%depth, 1.25_wp**0.4_wp, rounding, "Hertz: depth in units of v0 T")
+      call check_relative(hertz%inverse(8.0_wp), 4.0_wp, rounding, "s of a given u")
+      call check_relative(hertz%radius(4.0_wp/3.0_wp*sqrt(0.3_wp), 1.0e-3_wp), &
+         sqrt(0.3e-3_wp), rounding, "a = sqrt(R s)")
+      call check_relative(hertz%profile(4.0_wp/3.0_wp*sqrt(0.3_wp), 1.0e-3_wp), &
+         1.0e-6_wp/0.3_wp, rounding, "h = x^2/R")
       call check_relative(hertz%time_scale(2.0_wp, 3.0_wp, 4.0_wp), (1.0_wp/3.0_wp)**0.4_wp, &
          rounding, "T = (m/(k sqrt(v0)))^(2/5)")
       ! s + 3 u(s) = 28 at s = 4; the guess may be next to nothing, and as well far too large
       do i = 1, size(guess)
-         call hertz%solve(3.0_wp, 0.0_wp, -28.0_wp, guess(i), found, secant)
+         call hertz%solve(3.0_wp, 0.0_wp, -28.0_wp, guess(i), found)
          call check_relative(found, -4.0_wp, rounding, "root of the equation of a step")
-         call check_relative(secant, 2.0_wp, rounding, "u/s there")
       end do
 
       duration = [pi, 2.0_wp*1.5_wp**(1.0_wp/3.0_wp)*sqrt(pi)*gamma(4.0_wp/3.0_wp) &
@@ -113,12 +119,22 @@ contains
          call check_relative(law%u(-0.3_wp), -0.3_wp**exponent(i), rounding, "u is odd")
          call check_relative(law%slope(-0.3_wp), exponent(i)*0.3_wp**(exponent(i) - 1.0_wp), &
             rounding, "u' is even")
-         call law%secants(size(s), s, root)
-         call check(.not. any(abs(root - law%secant(s)) > 0.0_wp), "many values are the same")
+         call law%evaluate(size(s), s, root, slope)
+         call check(.not. any(abs(root - law%secant(s)) + abs(slope - law%slope(s)) > 0.0_wp), &
+            "many values are the same")
+         call check_relative(law%inverse(law%u(0.3_wp)), 0.3_wp, rounding, "inverse of u")
+         call check_relative(law%depth, (0.5_wp*(exponent(i) + 1.0_wp)) &
+            **(1.0_wp/(exponent(i) + 1.0_wp)), rounding, "depth in units of v0 T")
          call check_relative(law%time_scale(2.0_wp, 3.0_wp, 4.0_wp), &
             merge(sqrt(2.0_wp/3.0_wp), (2.0_wp/12.0_wp)**(1.0_wp/3.0_wp), i == 1), rounding, &
             "T of another law")
       end do
+      ! the cone touches x at (pi/2) x cot, the punch is flat
+      call check_relative(law%profile(cone_factor(30.0_wp), 0.2_wp), 0.1_wp*pi*sqrt(3.0_wp), &
+         rounding, "profile of a cone")
+      call new_contact_law(law, 1.0_wp, .false., error)
+      call check(.not. abs(law%profile(0.3_wp, 0.1_wp)) > 0.0_wp, "a flat punch is flat")
+      call check_relative(law%radius(0.3_wp, 1.0e-3_wp), 0.15_wp, rounding, "radius of a punch")
 
       call new_contact_law(law, 0.9_wp, .false., error)
       call refused(error, "an exponent below 1", "")

@@ -3,7 +3,7 @@
 module vcor_c_api_fit
    use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_int, c_null_ptr, &
       c_ptr
-   use vcor_c_api, only : c_numbers, c_text, report_error
+   use vcor_c_api_values, only : c_numbers, c_text, report_error
    use vcor_case_identified, only : material_text
    use vcor_error, only : error_t, error_usage, raise
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t

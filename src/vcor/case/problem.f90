@@ -452,7 +452,7 @@ contains
 
       if (self%impact%plate%layered() .and. self%settings%method /= 'direct') &
          call self%impact%plate%prepare(self%impact%law%contact_time*self%impact%time_scale(), &
-            self%impact%law%exponent)
+            self%impact%law%start_exponent)
    end subroutine prepare
 
    !> Coefficient of restitution with a 1.25 times larger disc on the layer
@@ -532,7 +532,7 @@ contains
 
       surface_radius = case%number(self%at%surface_radius)
       factor = 0.0_wp
-      exponent = law%exponent
+      exponent = law%start_exponent
       if (self%shape /= 'sphere' .and. abs(surface_radius) > 0.0_wp) then
          call raise(error, error_input, 'only a sphere meets a curved surface', &
             about='surface_radius shape')

@@ -2,7 +2,7 @@
 !>
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    k(t) = K E'(t)
 !>
-!> All that depends on the exponent n is in this module. A sphere has n = 3/2 (Hertz). A body of
+!> All that depends on u is in this module. A sphere has n = 3/2 (Hertz). A body of
 !> revolution z = C r^p has n = 1 + 1/p and, with kappa = sqrt(pi) Gamma(p/2 + 1)/Gamma((p + 1)/2)
 !> (L. A. Galin 1946; I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47,
 !> doi:10.1016/0020-7225(65)90019-4),
@@ -29,10 +29,13 @@ module vcor_impact_law
    !> A contact law, by default Hertz's with the hereditary integral over all the past, which is
    !> exact while the contact grows; immutable once built
    type :: contact_law_t
-      !> Exponent n of u = s^n [-], >= 1
-      real(wp) :: exponent = hertz
+      !> Exponent n of u ~ s^n as s -> 0, at first contact and where a contact ends [-], >= 1
+      real(wp) :: start_exponent = hertz
       !> Duration of an elastic impact in units of `time_scale` [-]
       real(wp) :: contact_time = 3.2180654597190435_wp
+      !> Largest indentation of an elastic impact over velocity times `time_scale`,
+      !> ((n + 1)/2)^(1/(n + 1)) [-]
+      real(wp) :: depth = 1.0933620739432781_wp
       !> Whether the integral ends at the time when the growing contact was as small as now: exact
       !> while the contact shrinks, too (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
       !> doi:10.1115/1.3625192)
@@ -41,7 +44,10 @@ module vcor_impact_law
       procedure, non_overridable :: u
       procedure, non_overridable :: slope
       procedure, non_overridable :: secant
-      procedure, non_overridable :: secants
+      procedure, non_overridable :: evaluate
+      procedure, non_overridable :: inverse
+      procedure, non_overridable :: radius
+      procedure, non_overridable :: profile
       procedure, non_overridable :: solve
       procedure, non_overridable :: time_scale
    end type contact_law_t
@@ -72,8 +78,9 @@ contains
       if (.not. abs(exponent - hertz) > 0.0_wp) return
       ! twice the time to the largest indentation, from the elastic energy k s^(n+1)/(n+1)
       part = 1.0_wp/(exponent + 1.0_wp)
-      self%exponent = exponent
-      self%contact_time = 2.0_wp*(0.5_wp/part)**part &
+      self%start_exponent = exponent
+      self%depth = (0.5_wp/part)**part
+      self%contact_time = 2.0_wp*self%depth &
          *sqrt(pi)*gamma(1.0_wp + part)/gamma(0.5_wp + part)
    end subroutine new_contact_law
 
@@ -160,7 +167,7 @@ contains
       !> Slope [m^0.5], >= 0
       real(wp) :: slope
 
-      slope = self%exponent*self%secant(s)
+      slope = self%start_exponent*self%secant(s)
    end function slope
 
    !> u/s = |s|^(n-1); for Hertz a square root, which costs a tenth of a power
@@ -171,15 +178,15 @@ contains
       !> u/s [m^0.5], >= 0
       real(wp) :: secant
 
-      if (abs(self%exponent - hertz) > 0.0_wp) then
-         secant = abs(s)**(self%exponent - 1.0_wp)
+      if (abs(self%start_exponent - hertz) > 0.0_wp) then
+         secant = abs(s)**(self%start_exponent - 1.0_wp)
       else
          secant = sqrt(abs(s))
       end if
    end function secant
 
-   !> u/s at many indentations, for inner loops: u = s (u/s), du/ds = n (u/s)
-   pure subroutine secants(self, n, s, secant)
+   !> u/s and du/ds at many indentations, for inner loops: u = s (u/s)
+   pure subroutine evaluate(self, n, s, secant, slope)
       class(contact_law_t), intent(in) :: self
       !> Number of indentations
       integer, intent(in) :: n
@@ -187,17 +194,60 @@ contains
       real(wp), intent(in) :: s(n)
       !> u/s [m^0.5], >= 0
       real(wp), intent(out) :: secant(n)
+      !> du/ds [m^0.5], >= 0
+      real(wp), intent(out) :: slope(n)
 
-      if (abs(self%exponent - hertz) > 0.0_wp) then
-         secant = abs(s)**(self%exponent - 1.0_wp)
+      if (abs(self%start_exponent - hertz) > 0.0_wp) then
+         secant = abs(s)**(self%start_exponent - 1.0_wp)
       else
          secant = sqrt(abs(s))
       end if
-   end subroutine secants
+      slope = self%start_exponent*secant
+   end subroutine evaluate
+
+   !> Indentation at which u has a given value
+   pure function inverse(self, u) result(s)
+      class(contact_law_t), intent(in) :: self
+      !> u [m^1.5], >= 0
+      real(wp), intent(in) :: u
+      !> Indentation [m]
+      real(wp) :: s
+
+      s = u**(1.0_wp/self%start_exponent)
+   end function inverse
+
+   !> Contact radius a = K u'(s)/2: an increment of s acts like a flat punch of this radius
+   elemental function radius(self, factor, s)
+      class(contact_law_t), intent(in) :: self
+      !> Factor K of the shape [m^(2-n)]
+      real(wp), intent(in) :: factor
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> Contact radius [m]
+      real(wp) :: radius
+
+      radius = 0.5_wp*factor*self%slope(s)
+   end function radius
+
+   !> Profile h(x) of the body in the method of dimensionality reduction: it touches the half space
+   !> up to x at the indentation h(x), x^2/R for a sphere. Flat for a punch, whose radius is K/2
+   elemental function profile(self, factor, x) result(h)
+      class(contact_law_t), intent(in) :: self
+      !> Factor K of the shape [m^(2-n)]
+      real(wp), intent(in) :: factor
+      !> Distance from the axis [m], >= 0
+      real(wp), intent(in) :: x
+      !> Profile [m]
+      real(wp) :: h
+
+      h = 0.0_wp
+      if (self%start_exponent > 1.0_wp) h = (2.0_wp*x/(self%start_exponent*factor)) &
+         **(1.0_wp/(self%start_exponent - 1.0_wp))
+   end function profile
 
    !> Solve s + c u(s) + d u(s)^2 = r by Newton's method for y = sqrt(|s|), which is u/s for Hertz,
    !> so that no iteration takes a root
-   pure subroutine solve(self, c, d, r, guess, s, secant)
+   pure subroutine solve(self, c, d, r, guess, s)
       class(contact_law_t), intent(in) :: self
       !> Coefficient [m^-0.5], >= 0
       real(wp), intent(in) :: c
@@ -209,15 +259,12 @@ contains
       real(wp), intent(in) :: guess
       !> Indentation [m]
       real(wp), intent(out) :: s
-      !> u/s at the solution [m^0.5]
-      real(wp), intent(out) :: secant
 
       real(wp), parameter :: least_guess = 1.0e-3_wp
-      real(wp) :: e, y, u, correction
+      real(wp) :: e, y, u, correction, secant
       integer :: iteration
 
       s = 0.0_wp
-      secant = self%secant(s)
       if (.not. abs(r) > 0.0_wp) return
       ! with d = 0 the root y is below sqrt(|r|), and Newton's method descends to it monotonically
       e = sign(d, r)
@@ -226,17 +273,16 @@ contains
       if (abs(guess) > 0.0_wp) y = min(y, max(sqrt(abs(guess)), least_guess*y))
       do iteration = 1, 60
          secant = y
-         if (abs(self%exponent - hertz) > 0.0_wp) secant = y**(2.0_wp*self%exponent - 2.0_wp)
+         if (abs(self%start_exponent - hertz) > 0.0_wp) secant = y**(2.0_wp*self%start_exponent - 2.0_wp)
          s = y*y
          u = s*secant
          correction = ((s - abs(r)) + u*(c + e*u)) &
-            /(2.0_wp*(y + self%exponent*secant*y*(c + 2.0_wp*e*u)))
+            /(2.0_wp*(y + self%start_exponent*secant*y*(c + 2.0_wp*e*u)))
          y = y - correction
          ! the remaining error is about the square of the correction
          if (abs(correction) <= 1.0e-9_wp*y) exit
       end do
       s = sign(y*y, r)
-      secant = self%secant(s)
    end subroutine solve
 
    !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of an impact on an elastic contact, F = k u
@@ -251,7 +297,7 @@ contains
       !> Time scale [s]
       real(wp) :: time
 
-      time = (mass/(firmness*self%secant(velocity)))**(1.0_wp/(self%exponent + 1.0_wp))
+      time = (mass/(firmness*self%secant(velocity)))**(1.0_wp/(self%start_exponent + 1.0_wp))
    end function time_scale
 
 end module vcor_impact_law

@@ -66,6 +66,10 @@ module vcor_impact_outcome
       real(wp) :: cor_error = none
       !> Estimate of the error of `cor_sphere` [-]
       real(wp) :: cor_sphere_error = none
+      !> Estimate of the error of `contact_time` [s]
+      real(wp) :: contact_time_error = none
+      !> Estimate of the error of `max_force` [N]
+      real(wp) :: max_force_error = none
       !> Accuracy requested for both [-]; 0 if none was
       real(wp) :: accuracy = 0.0_wp
       !> Rebound resilience, cor_sphere^2 [-]
@@ -163,6 +167,8 @@ contains
       outcome%loss_tangent = aimag(modulus)/real(modulus, wp)
       outcome%cor_error = trajectory%cor_error
       outcome%cor_sphere_error = trajectory%cor_sphere_error
+      outcome%contact_time_error = trajectory%contact_time_error
+      outcome%max_force_error = trajectory%max_force_error
       outcome%accuracy = trajectory%accuracy
    end function evaluate
 
@@ -174,8 +180,8 @@ contains
       type(impact_t), intent(in) :: impact
 
       if (.not. impact%springs_back()) return
-      self%residual_indentation = (impact%mass*impact%gravity &
-         /(impact%factor*impact%modulus%rubbery()))**(1.0_wp/impact%law%exponent)
+      self%residual_indentation = impact%law%inverse(impact%mass*impact%gravity &
+         /(impact%factor*impact%modulus%rubbery()))
       self%max_indentation = max(self%max_indentation, self%residual_indentation)
       self%residual_ratio = self%residual_indentation/self%max_indentation
    end subroutine settle

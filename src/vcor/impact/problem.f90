@@ -157,8 +157,7 @@ contains
       end if
    end subroutine launch
 
-   !> Largest contact radius of an elastic impact with time scale T: sqrt(R 1.0936 v0 T) for a
-   !> sphere, whose largest indentation is 1.0936 v0 T
+   !> Largest contact radius of an elastic impact with time scale T
    pure function expected_radius(self, time_scale) result(radius)
       class(impact_t), intent(in) :: self
       !> Time scale T [s]
@@ -166,7 +165,7 @@ contains
       !> Radius [m]
       real(wp) :: radius
 
-      radius = self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
+      radius = self%contact_radius(self%law%depth*self%speed_scale(time_scale)*time_scale)
    end function expected_radius
 
    !> Distance covered by the sphere without a contact force, v0 t + g t^2/2
@@ -216,7 +215,7 @@ contains
       force = drag*self%velocity/(1.0_wp + self%plate%alpha(0.0_wp)*drag)
    end function first_force
 
-   !> Contact radius a = K u'(s)/2: an increment of s acts like a flat punch of this radius
+   !> Contact radius
    elemental function contact_radius(self, indentation) result(radius)
       class(impact_t), intent(in) :: self
       !> Indentation [m]
@@ -224,7 +223,7 @@ contains
       !> Radius [m]
       real(wp) :: radius
 
-      radius = 0.5_wp*self%factor*self%law%slope(indentation)
+      radius = self%law%radius(self%factor, indentation)
    end function contact_radius
 
    !> Share of the contact's dent, at an indentation that grows at once, that a layer does not take

@@ -79,6 +79,10 @@ module vcor_impact_trajectory
       real(wp) :: cor_error = 0.0_wp
       !> Estimated error of that of the sphere alone [-]
       real(wp) :: cor_sphere_error = 0.0_wp
+      !> Estimated error of the contact time [s]; NaN if the solver estimates none
+      real(wp) :: contact_time_error = unset
+      !> Estimated error of the largest force [N]; NaN if the solver estimates none
+      real(wp) :: max_force_error = unset
       !> Accuracy requested for both [-]; 0 if none was, as the time step is given
       real(wp) :: accuracy = 0.0_wp
       !> Number of exponentials that approximate the kernel; 0 if it is used unchanged

@@ -88,7 +88,7 @@ contains
             return
          end if
          if (impact%plate%hereditary()) then
-            call impact%plate%response(window, impact%law%exponent, plate_share*self%accuracy, &
+            call impact%plate%response(window, impact%law%start_exponent, plate_share*self%accuracy, &
                modes%plate, modes%instant, misfit)
             if (impact%plate%layered()) modes%plate%error = misfit%motion*impact%mass/window**2
             if (.not. modes%plate%error < 1.0_wp) then
@@ -118,7 +118,7 @@ contains
          //'begins to hold: the plate is too soft, too thin or too light for this sphere; take a ' &
          //"larger plate.half_thickness, a lighter sphere, or method = 'direct'")
       ! the sums for bodies blunter than a sphere have fast rates that nothing else keeps in check
-      if (impact%plate%layered() .and. impact%law%exponent < 1.5_wp &
+      if (impact%plate%layered() .and. impact%law%start_exponent < 1.5_wp &
           .and. trajectory%max_indentation > 0.0_wp .and. .not. allocated(error)) then
          if (is_unstable(impact, modes, window, trajectory%max_indentation)) call raise(error, &
             error_numerical, 'the sum of exponentials of the plate oscillates ever more with ' &
@@ -143,7 +143,7 @@ contains
             trajectory%cor_error = trajectory%cor_error + error_of_layer*stiffness &
                *merge(misfit%power_end, misfit%smooth_end, ends_as_power(impact, trajectory))
             ! 1 for a flat punch, 0 for a sphere and sharper bodies
-            blunt = max(3.0_wp - 2.0_wp*impact%law%exponent, 0.0_wp)*speed_of_face(trajectory) &
+            blunt = max(3.0_wp - 2.0_wp*impact%law%start_exponent, 0.0_wp)*speed_of_face(trajectory) &
                /impact%velocity
             error_of_sums = max(error_of_sums, error_of_blunt*blunt)
             trajectory%cor_error = max(trajectory%cor_error, end_of_blunt*blunt)

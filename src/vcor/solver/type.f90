@@ -128,7 +128,7 @@ contains
       if (error%code /= error_numerical) return
       scale = impact%time_scale()
       ratio = solver%settings%second_coefficient &
-         *impact%law%u(1.0936_wp*impact%speed_scale(scale)*scale)
+         *impact%law%u(impact%law%depth*impact%speed_scale(scale)*scale)
       ! the force u + c2 u^2 falls beyond u = -1/(2 c2); q (c2 q - 1), left at u = 0, is a push if
       ! the internal variable q exceeds 1/c2
       if (ratio < -0.5_wp .or. ratio > 1.0_wp) call raise(error, error_numerical, 'the second ' &

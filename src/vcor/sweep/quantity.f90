@@ -164,6 +164,10 @@ contains
       call list%add('cor_error', 'de', '1', 'estimated error of cor', outcome%cor_error)
       call list%add('cor_sphere_error', 'de_a', '1', 'estimated error of cor_sphere', &
          outcome%cor_sphere_error)
+      call list%add('contact_time_error', 'dt0', 's', 'estimated error of contact_time', &
+         outcome%contact_time_error)
+      call list%add('max_force_error', 'dF_max', 'N', 'estimated error of max_force', &
+         outcome%max_force_error)
       call list%add('resilience', 'e_a^2', '1', 'rebound resilience, cor_sphere^2', &
          outcome%resilience)
       call list%add('rebound_height', 'H_1', 'm', 'height of the rebound from drop_height', &

@@ -109,8 +109,8 @@ contains
       end do
 
       ! (1 - x)^n integrated once and twice from x = 0 to 1
-      once = 1.0_wp/(impact%law%exponent + 1.0_wp)
-      twice = 1.0_wp/(impact%law%exponent + 2.0_wp)
+      once = 1.0_wp/(impact%law%start_exponent + 1.0_wp)
+      twice = 1.0_wp/(impact%law%start_exponent + 2.0_wp)
       tau = theta*(trajectory%state(col_time, n) - a(col_time))
       node(col_time) = a(col_time) + tau
       node(col_impulse) = a(col_impulse) + once*tau*a(col_force)

@@ -308,7 +308,7 @@ contains
          .or. .not. impact%plate%alpha_rate(early*dt) > 0.0_wp
       power = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt)
       if (.not. smooth) power = power*ratio_of_rates(dt)
-      power = impact%law%exponent - 1.0_wp + log(max(power, 0.5_wp))/log(2.0_wp)
+      power = impact%law%start_exponent - 1.0_wp + log(max(power, 0.5_wp))/log(2.0_wp)
 
    contains
 

@@ -94,7 +94,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: spare = 8
-      real(wp) :: dt, span, reach, work, cor(3), cor_sphere(3), depth(3), force(3)
+      real(wp) :: dt, span, reach, work, cor(3), cor_sphere(3), contact_time(3), depth(3), force(3)
       type(richardson_t) :: found
       integer :: level, room
       logical :: crude
@@ -138,6 +138,7 @@ contains
             associate (final => trajectory%state(:, trajectory%last))
                cor = [cor(2:3), -final(col_velocity)/impact%velocity]
                cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
+               contact_time = [contact_time(2:3), final(col_time)]
             end associate
             depth = [depth(2:3), trajectory%max_indentation]
             force = [force(2:3), trajectory%max_force]
@@ -147,6 +148,8 @@ contains
                trajectory%cor_error = found%error
                found = richardson(cor_sphere)
                trajectory%cor_sphere_error = found%error
+               found = richardson(contact_time)
+               trajectory%contact_time_error = found%error
                ! cor has the errors of cor_sphere and of the plate, which cancel only by chance
                trajectory%cor_error = max(trajectory%cor_error, &
                   cancelled*trajectory%cor_sphere_error)
@@ -164,8 +167,9 @@ contains
                   trajectory%cor_sphere_error = max(trajectory%cor_sphere_error, &
                      abs(cor_sphere(3) - cor_sphere(2)))
                end if
-               if (time_step > 0.0_wp) return
                found = richardson(force)
+               trajectory%max_force_error = found%error
+               if (time_step > 0.0_wp) return
                if (trajectory%cor_sphere_error <= accuracy .and. (reach > 0.0_wp &
                    .and. trajectory%steps > enough_steps &
                    .or. trajectory%cor_error <= trajectory%accuracy &
@@ -410,7 +414,7 @@ contains
       !> Node
       integer, intent(in) :: n
 
-      real(wp) :: known, linear, quadratic, single, own, last_u, secant
+      real(wp) :: known, linear, quadratic, single, own, last_u
       logical :: two_terms
 
       call run%motion%respond(impact, n, 0.0_wp)
@@ -431,9 +435,9 @@ contains
                  v_0 => run%motion%velocity(1), slowing => run%motion%velocity(2), &
                  weight => run%motion%weight, alpha => run%motion%alpha)
          call impact%law%solve(per_force*(linear + run%viscosity/weight), per_force*quadratic, &
-            s_0 - per_force*known, run%s + run%kernel%dt*run%speed, run%s, secant)
-         run%u = run%s*secant
-         run%slope = impact%law%exponent*secant
+            s_0 - per_force*known, run%s + run%kernel%dt*run%speed, run%s)
+         run%u = impact%law%u(run%s)
+         run%slope = impact%law%slope(run%s)
          run%du(n) = run%u - last_u
          if (two_terms) call run%second%accept(n, run%du)
          run%force = known + (linear + quadratic*run%u)*run%u

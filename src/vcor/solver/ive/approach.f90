@@ -88,7 +88,7 @@ contains
 
       integer, parameter :: usual_panels = 8
       type(stretch_t), allocatable :: longer(:)
-      real(wp), dimension(width) :: s, u, lambda, lag
+      real(wp), dimension(width) :: s, u, slope, lambda, lag
       integer :: k, stages
 
       stages = rule%stages
@@ -119,7 +119,7 @@ contains
          stretch%past(:, size(self%w) + 1:) = 0.0_wp
          ! from increments in the panel, since modes that settle at once would leave no digits of s
          s = apply(map%left, panel%indentation(1:) - panel%indentation(0))
-         call law%secants(width, panel%indentation(1:), u)
+         call law%evaluate(width, panel%indentation(1:), u, slope)
          u = apply(map%left, panel%indentation(1:)*u - law%u(panel%indentation(0)))
          lambda = step%map_scale()*map%eigenvalue
          do k = 1, size(self%w)
@@ -214,7 +214,7 @@ contains
             end if
          end associate
       end do
-      call self%law%secants(width, s, root)
+      call self%law%evaluate(width, s, root, slope)
       where (t1 > 0.0_wp)
          condition = equilibrium*s + n_past
          force = equilibrium*(s*root) + f_past
@@ -222,7 +222,6 @@ contains
          condition = stiffness*s
          force = stiffness*(s*root)
       end where
-      slope = self%law%exponent*root
       rate = stiffness*velocity
    end subroutine evaluate
 

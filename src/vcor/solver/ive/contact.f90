@@ -189,7 +189,7 @@ contains
       real(wp) :: power, allowed
 
       associate (law => self%problem%impact%law)
-         power = 1.0_wp + law%exponent
+         power = 1.0_wp + law%start_exponent
          self%branch_felt = branch_error*abs(2.0_wp*power - anint(2.0_wp*power)) &
             *(self%step%reach**2/(0.5_wp*law%contact_time*self%time_scale))**power
          allowed = inner_allowed*self%accuracy
@@ -440,7 +440,7 @@ contains
          self%end_found = self%start%time + self%step%duration()
          self%ahead = 0
          if (self%ends_at_branch) self%ahead = ceiling(min(most_ahead, -log(self%excess) &
-            /((1.0_wp + self%problem%impact%law%exponent)*log(1.0_wp - cut_at_end)))) - 1
+            /((1.0_wp + self%problem%impact%law%start_exponent)*log(1.0_wp - cut_at_end)))) - 1
       end if
       call self%step%shorten(merge(cut_at_end, 0.5_wp, self%ends)*self%step%duration())
    end subroutine shorten

@@ -379,9 +379,8 @@ contains
             panel%time(1:), panel%t1(1:), e%x, e%f, e%slope, e%rate)
       else
          e%x = panel%indentation(1:)
-         call self%impact%law%secants(width, e%x, e%slope)
-         e%f = e%x*e%slope - e%start_u
-         e%slope = self%impact%law%exponent*e%slope
+         call self%impact%law%evaluate(width, e%x, e%f, e%slope)
+         e%f = e%x*e%f - e%start_u
       end if
    end subroutine evaluate
 

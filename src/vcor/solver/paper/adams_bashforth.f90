@@ -130,20 +130,23 @@ contains
       end if
    end subroutine run
 
-   !> Both coefficients of restitution
-   pure function cor_of(impact, trajectory) result(cor)
+   !> Results whose errors are estimated
+   pure function results_of(impact, trajectory) result(results)
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(in) :: trajectory
-      !> -s'(t0)/v0 and -z'(t0)/v0 [-]
-      real(wp) :: cor(2)
+      !> -s'(t0)/v0 and -z'(t0)/v0 [-], contact time [s], largest force [N]
+      real(wp) :: results(4)
 
-      cor = -trajectory%state([col_velocity, col_sphere_velocity], trajectory%last)/impact%velocity
-   end function cor_of
+      associate (final => trajectory%state(:, trajectory%last))
+         results = [-final([col_velocity, col_sphere_velocity])/impact%velocity, final(col_time), &
+            trajectory%max_force]
+      end associate
+   end function results_of
 
-   !> Errors of the coefficients of restitution by Richardson's extrapolation from runs with two and
-   !> four times the step, with the observed order, at most two; it is almost zero if the kernel
-   !> falls within a step. If longer steps are unstable, one other run is used with the order of
-   !> rectangles or of the capped kernel
+   !> Errors of the results by Richardson's extrapolation from runs with two and four times the
+   !> step, with the observed order, at most two; it is almost zero if the kernel falls within a
+   !> step. If longer steps are unstable, one other run is used with the order of rectangles or of
+   !> the capped kernel
    subroutine estimate_errors(self, impact, dt, trajectory)
       type(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -153,8 +156,8 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
 
       real(wp), parameter :: smallest_ratio = 1.2_wp, best_ratio = 8.0_wp
-      real(wp), dimension(2) :: cor, fine, estimate, ratio
-      real(wp) :: coarse(2, 2), least
+      real(wp), dimension(4) :: found, fine, estimate, ratio
+      real(wp) :: coarse(4, 2), least
       logical :: known
       integer :: i
 
@@ -163,7 +166,7 @@ contains
       if (capped(impact)) least = max(smallest_ratio, &
          2.0_wp*impact%kernel(2.0_wp*dt)/impact%kernel(dt))
 
-      cor = cor_of(impact, trajectory)
+      found = results_of(impact, trajectory)
       do i = 1, 2
          call attempt(2.0_wp**i*dt, coarse(:, i), known)
          if (.not. known) exit
@@ -171,29 +174,31 @@ contains
       select case (i)
       case (3)
          ! the last two may agree by chance: use the first two as well
-         estimate = max(abs(coarse(:, 1) - cor), abs(coarse(:, 2) - coarse(:, 1))/best_ratio)
+         estimate = max(abs(coarse(:, 1) - found), abs(coarse(:, 2) - coarse(:, 1))/best_ratio)
          ratio = 4.0_wp
          where (estimate > 0.0_wp) ratio = abs(coarse(:, 2) - coarse(:, 1))/estimate
          estimate = estimate/(min(max(ratio, smallest_ratio), 4.0_wp) - 1.0_wp)
       case (2)
-         estimate = abs(coarse(:, 1) - cor)/(least - 1.0_wp)
+         estimate = abs(coarse(:, 1) - found)/(least - 1.0_wp)
       case default
          call attempt(0.5_wp*dt, fine, known)
-         estimate = abs(cor)
-         if (known) estimate = abs(cor - fine)*least/(least - 1.0_wp)
+         estimate = abs(found)
+         if (known) estimate = abs(found - fine)*least/(least - 1.0_wp)
       end select
       trajectory%cor_error = estimate(1)
       trajectory%cor_sphere_error = estimate(2)
+      trajectory%contact_time_error = estimate(3)
+      trajectory%max_force_error = estimate(4)
       trajectory%accuracy = self%settings%accuracy
 
    contains
 
-      !> Coefficients of restitution with another step
+      !> Results with another step
       subroutine attempt(step, value, known)
          !> Time step [s]
          real(wp), intent(in) :: step
-         !> Coefficients of restitution
-         real(wp), intent(out) :: value(2)
+         !> Results
+         real(wp), intent(out) :: value(4)
          !> Whether there are any
          logical, intent(out) :: known
 
@@ -203,7 +208,7 @@ contains
          value = 0.0_wp
          call march(self%settings, impact, step, .false., trajectory, stable, complete)
          known = stable .and. complete .and. trajectory%status == contact_separated
-         if (known) value = cor_of(impact, trajectory)
+         if (known) value = results_of(impact, trajectory)
       end subroutine attempt
    end subroutine estimate_errors
 

@@ -99,7 +99,7 @@ contains
          !> Their derivatives
          real(wp) :: f(2)
 
-         f = [y(2), -law%secant(y(1))*(a*y(1) + law%exponent*b*y(2))]
+         f = [y(2), -(a*law%u(y(1)) + b*law%slope(y(1))*y(2))]
       end function slope
    end subroutine runge_kutta
 

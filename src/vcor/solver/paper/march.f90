@@ -293,14 +293,13 @@ contains
       !> Node
       integer, intent(in) :: n
 
-      real(wp) :: secant, past, own, force, u
+      real(wp) :: past, own, force, u
       logical :: form_a
 
       form_a = settings%form == 'a'
-      secant = impact%law%secant(run%s)
-      u = run%s*secant
+      u = impact%law%u(run%s)
       run%w(n) = u
-      if (form_a) run%w(n) = impact%law%exponent*run%velocity(1)*secant
+      if (form_a) run%w(n) = impact%law%slope(run%s)*run%velocity(1)
       own = run%share*run%w(n)
       past = run%kernel%sum_over(n, 1, n - 1, run%w)
       force = run%dt*(past + run%kernel%newest*own)

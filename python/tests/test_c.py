@@ -1,0 +1,161 @@
+"""The C interface with what no caller should give it: a code and a line, never a crash."""
+
+import math
+from ctypes import byref, c_char_p, c_double, c_int, c_void_p
+
+import pytest
+from conftest import PAPER
+
+from vcor import _library
+
+USAGE, INPUT = 2, 3
+CASE = str(PAPER / "sls.nml").encode()
+
+
+def called(name, *arguments):
+    """Code and message of a function, called as C does: without the checks of the package."""
+    function = _library._library[name]  # a function of its own, without argtypes
+    error = _library._ErrorStruct()
+    code = function(*arguments, byref(error))
+    assert code == error.code
+    return code, error.message.decode()
+
+
+@pytest.fixture
+def case():
+    pointer = c_void_p()
+    assert called("vcor_read", None, CASE, byref(pointer))[0] == 0
+    yield pointer
+    _library.free_case(pointer)
+
+
+def doubles(*values):
+    return (c_double * len(values))(*values)
+
+
+def names(*values):
+    return (c_char_p * len(values))(*values)
+
+
+def arguments(case):
+    """Names of the arguments of each function, with what may be given."""
+    text, column, count, number = c_void_p(), _library.ColumnStruct(), c_int(), c_double()
+    velocity, cor = names(b"impact.velocity"), names(b"cor")
+    return {
+        "vcor_read": {"text?": None, "name": CASE, "self": byref(c_void_p())},
+        "vcor_set": {"case": case, "address": b"impact.velocity", "value": b"2.0"},
+        "vcor_get": {"case": case, "address": b"impact.velocity", "value": byref(text)},
+        "vcor_describe": {"case": case, "address": b"impact.velocity", "column": byref(column)},
+        "vcor_case_text": {"case": case, "complete?": 0, "text": byref(text)},
+        "vcor_axis": {
+            "case": case, "index?": 0, "column": byref(column), "n": byref(count),
+            "values": byref(text),
+        },
+        "vcor_solve": {
+            "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
+            "k?": 1, "columns": cor, "results": doubles(0.0), "threads?": 1,
+        },
+        "vcor_history": {"case": case, "rows": byref(count), "values": byref(text)},
+        "vcor_relaxation": {
+            "case": case, "material": b"rubber", "n?": 1, "times": doubles(1.0),
+            "moduli": doubles(0.0),
+        },
+        "vcor_complex_modulus": {
+            "case": case, "material": b"rubber", "n?": 1, "frequencies": doubles(1.0),
+            "storage": doubles(0.0), "loss": doubles(0.0),
+        },
+        "vcor_time_factor": {"case": case, "material": b"rubber", "factor": byref(number)},
+        "vcor_verify": {"case": case, "results": doubles(*[0.0] * 200)},
+    }  # fmt: skip
+
+
+def test_all_functions_are_here(case):
+    header = set(_library._ARGUMENTS) - {"vcor_fit_data", "vcor_read_moduli"}
+    assert header == set(arguments(case))
+
+
+@pytest.mark.parametrize("name", list(arguments(None)))
+def test_null_is_refused_by_name(case, name):
+    given = arguments(case)[name]
+    assert called(name, *given.values())[0] == 0
+    for argument in given:
+        if argument.endswith("?"):
+            continue
+        code, line = called(name, *(given | {argument: None}).values())
+        assert code == USAGE
+        expected = "the case" if argument == "case" else f"the argument {argument}"
+        assert line.startswith(f"{expected} is NULL")
+
+
+def test_error_may_be_null(case):
+    function = _library._library["vcor_set"]
+    assert function(case, b"impact.velocity", b"2.0", None) == 0
+    assert function(case, b"impact.velocity", b"fast", None) == USAGE
+
+
+def test_other_functions(case):
+    _library.free_case(None)
+    column_of = _library._library["vcor_column_of"]
+    column = _library.ColumnStruct()
+    assert column_of(0, 0, None) == 0
+    for table, index in ((0, -1), (0, 2**31 - 1), (-(2**31), 0), (7, 0)):
+        assert column_of(table, index, byref(column)) == 0
+    assert column_of(0, 0, byref(column)) == 1
+
+
+@pytest.mark.parametrize(("key", "value", "words"), [
+    ("m?", -1, "a negative number"), ("n?", -1, "a negative number"),
+    ("k?", -(2**31), "a negative number"), ("threads?", -5, "found -5 threads"),
+    ("threads?", 2**31 - 1, "expected 1 to 1024"), ("addresses", names(None), "addresses[i]"),
+    ("columns", names(None), "columns[i]"), ("addresses", names(b""), "expected"),
+])  # fmt: skip
+def test_numbers_of_a_table(case, key, value, words):
+    code, line = called("vcor_solve", *(arguments(case)["vcor_solve"] | {key: value}).values())
+    assert code == USAGE
+    assert words in line
+
+
+def test_tables_without_elements(case):
+    for m, n, k in ((0, 0, 0), (1, 0, 1), (1, 1, 0)):
+        given = {"m?": m, "n?": n, "k?": k}
+        given |= {"values": None, "results": None} if n == 0 else {"results": None}
+        given |= {"addresses": None} if m == 0 else {}
+        given |= {"columns": None} if k == 0 else {}
+        table = arguments(case)["vcor_solve"] | given
+        assert called("vcor_solve", *table.values()) == (0, "")
+    assert called("vcor_relaxation", case, b"rubber", 0, None, None) == (0, "")
+    code, line = called("vcor_solve", case, 0, None, 5, None, 0, None, None, 1)
+    assert code == USAGE and "several points" in line
+
+
+def test_nan(case):
+    results = doubles(1.0, 1.0, 1.0, 1.0)
+    values = doubles(math.nan, math.inf, -math.inf, -0.0)
+    code, line = called("vcor_solve", case, 1, names(b"impact.velocity"), 4, values, 1,
+                        names(b"cor"), results, 1)  # fmt: skip
+    assert code == 0 and line.startswith("4 of 4 points have no result")
+    assert all(map(math.isnan, results))
+    for bad, words in ((math.nan, "not a number"), (-1.0, "negative")):
+        code, line = called("vcor_relaxation", case, b"rubber", 2, doubles(1.0, bad), results)
+        assert code == INPUT and words in line
+        code, line = called("vcor_complex_modulus", case, b"rubber", 2, doubles(1.0, bad), results,
+                            results)  # fmt: skip
+        assert code == INPUT and words in line
+    assert called("vcor_relaxation", case, b"rubber", 1, doubles(math.inf), results)[0] == 0
+    assert results[0] == 3.75e6
+    code, _ = called("vcor_complex_modulus", case, b"rubber", 1, doubles(math.inf), results, results)
+    assert code == INPUT
+
+
+def test_address_that_does_not_fit_a_column():
+    name = "r" * 280
+    text = PAPER.joinpath("sls.nml").read_text().replace("rubber", name).encode()
+    pointer = c_void_p()
+    assert called("vcor_read", text, b"x.nml", byref(pointer))[0] == 0
+    column = _library.ColumnStruct()
+    code, line = called("vcor_describe", pointer, f"{name}.beta".encode(), byref(column))
+    assert code == INPUT
+    assert line.endswith("found an address of 285 bytes, expected at most 255, with a shorter name "
+                         "of the material")  # fmt: skip
+    assert column.name == b""
+    _library.free_case(pointer)
