@@ -84,6 +84,11 @@ int vcor_read(const char *text, const char *name, vcor_case **self, vcor_error *
 /* Release a case; NULL is allowed */
 void vcor_free(vcor_case *self);
 
+/* Complete a case by the groups of another one, which has &material groups alone, as `vcor run` takes
+ * files of materials after a case. Data files that these groups name stay relative to the folder of
+ * `materials`, which may be released afterwards. */
+int vcor_add_materials(vcor_case *self, const vcor_case *materials, vcor_error *error);
+
 /* Set the value at an address such as "impact.velocity", "rubber.beta" or "rubber.moduli(2)"; the
  * value as a namelist has it, a text also without quotes */
 int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);

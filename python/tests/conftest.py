@@ -5,6 +5,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# The same examples in each run, and nothing written beside the sources
+settings.register_profile("vcor", deadline=None, database=None, derandomize=True,
+                          suppress_health_check=list(HealthCheck))  # fmt: skip
+settings.load_profile("vcor")
 
 ROOT = Path(__file__).parents[2]
 PAPER = ROOT / "examples" / "paper"

@@ -595,3 +595,50 @@ def test_a_number_of_a_list():
     assert cor[0] == case.run().cor == case.points({"rubber.moduli(2)": [1e6]}).cor[0]
     with pytest.raises(vcor.InputError, match="moduli"):
         case["rubber.moduli(3)"] = 1e6
+
+
+@pytest.mark.parametrize(
+    "folder", ["it's", 'say "it"', "a, velocity = 3", "x' / &impact velocity=3", "é"]
+)
+def test_data_files_of_any_folder(tmp_path, monkeypatch, folder):
+    """Found by a case, its materials and its copies; nothing of a name is read as a key."""
+    place = tmp_path / folder.replace("/", "!")
+    place.mkdir()
+    for name in ("x.csv", "it's.csv"):
+        (place / name).write_text("t,E\n1e-6,1e7\n1e-3,5e6\n1,1e6\n")
+    bodies = "&impact velocity=1.0 /\n&sphere radius=0.01, material='s' /\n&plate material='r', " \
+             "waves='none' /\n&material name='s', model='rigid', density=7800. /\n"  # fmt: skip
+    (tmp_path / "base.nml").write_text(bodies)
+    title = "&case title = 'file = ''x.csv''' /\n"
+    cors = set()
+    for data in ("x.csv", "it''s.csv"):
+        rubber = f"&material name='r', model='table', poisson_ratio=0.5, file='{data}' /\n"
+        (place / "m.nml").write_text(f"! file = 'nowhere.csv'\n{rubber}")
+        (place / "case.nml").write_text(title + bodies + rubber)
+        both = vcor.read(tmp_path / "base.nml", place / "m.nml")
+        alone = vcor.read(place / "case.nml")
+        alone.save(tmp_path / "saved.nml")
+        monkeypatch.chdir(place)
+        relative = vcor.read("../base.nml", "m.nml")
+        saved = vcor.read(tmp_path / "saved.nml")
+        assert saved["case.title"] == "file = 'x.csv'"
+        for case in (both, alone, relative, saved, both.copy(), pickle.loads(pickle.dumps(both))):
+            assert case["impact.velocity"] == 1.0
+            cors.add(case.solve()["cor"])
+    assert len(cors) == 1
+
+
+def test_materials_are_materials_alone(tmp_path, sls):
+    (tmp_path / "m.nml").write_text(
+        "&material name = 'x', model = 'rigid' /\n&impact velocity=3 /\n"
+    )
+    with pytest.raises(vcor.InputError, match="m.nml: found other groups, expected &material"):
+        vcor.read(PAPER / "sls.nml", tmp_path / "m.nml")
+
+
+def test_address_that_is_too_long():
+    name = "r" * 280
+    case = vcor.Case(PAPER.joinpath("sls.nml").read_text().replace("rubber", name))
+    assert case.solve({f"{name}.beta": 600.0}, ["cor"])["cor"] > 0
+    with pytest.raises(vcor.InputError, match="an address of 285 bytes, expected at most 255"):
+        case.points({f"{name}.beta": [600.0]}, ["cor"])

@@ -1,15 +1,20 @@
 """Uncertainty: elasticities against independent differences, Sobol' indices against known ones."""
 
+import contextlib
 import json
 import re
+import warnings
 
 import numpy as np
 import pytest
 from conftest import PAPER, ROOT
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import vcor
 from vcor import uncertainty
+from vcor.uncertainty import Spread
 
 EXAMPLES = ROOT / "examples"
 MATERIAL = ["rubber.glassy_modulus", "rubber.alpha", "rubber.beta"]
@@ -206,6 +211,76 @@ def test_what_is_no_fit_is_named(text, tmp_path, sls):
     (tmp_path / "fit.json").write_text(text)
     with pytest.raises(vcor.InputError, match="JSON.* of vcor fit or identify"):
         vcor.propagate(sls, covariance=tmp_path / "fit.json")
+
+
+VALID = {
+    "name": "rubber",
+    "parameters": [{"name": "beta", "value": 900.0, "standard_error": 2.0},
+                   {"name": "rubber.alpha", "value": 200.0}],
+    "covariance": [[4.0, 0.1], [0.1, 1.0]],
+    "group": "&material name = 'rubber', model = 'sls', glassy_modulus = 1e7, alpha = 200.0, "
+             "beta = 900.0, poisson_ratio = 0.5 /",
+    "note": "",
+}  # fmt: skip
+ANYTHING = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3)
+    ),
+    max_leaves=6,
+)
+
+
+def places(document, path=()):
+    """Places of a document, its own first."""
+    yield path
+    inner = document.items() if isinstance(document, dict) else ()
+    for key, one in enumerate(document) if isinstance(document, list) else inner:
+        yield from places(one, (*path, key))
+
+
+@settings(max_examples=300)
+@given(st.data())
+def test_a_damaged_fit_is_a_line(sls, tmp_path, data):
+    """Whatever stands in a place of the document: a spread, or an error of the input."""
+    document = json.loads(json.dumps(VALID))
+    path = data.draw(st.sampled_from(list(places(VALID))[1:]))
+    inner = document
+    for key in path[:-1]:
+        inner = inner[key]
+    if data.draw(st.booleans()):
+        inner[path[-1]] = data.draw(ANYTHING)
+    else:
+        del inner[path[-1]]
+    (tmp_path / "fit.json").write_text(json.dumps(document))
+    with warnings.catch_warnings(), contextlib.suppress(vcor.InputError):
+        warnings.simplefilter("ignore", UserWarning)
+        case, spread = Spread.joint(sls, tmp_path / "fit.json")
+        assert np.isfinite(spread.sample(np.full((1, len(spread.addresses)), 0.3))).all()
+        assert case.text()
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    ({"covariance": None}, "found no JSON"), ({"covariance": [[1.0]]}, "of 2 x 2 finite numbers"),
+    ({"covariance": [[4.0, None], [None, 1.0]]}, "found no JSON"),
+    ({"covariance": [[4.0, 0.1], [1.0]]}, "found no JSON"),
+    ({"covariance": [[4.0, 0.9], [0.1, 1.0]]}, "not symmetrical"),
+    ({"group": 3}, "expected texts as name, group and note"),
+    ({"group": "&impact velocity = 3 /"}, "expected &material groups alone"),
+    ({"group": "&material"}, "fit.json:1"), ({"parameters": [3, 4]}, "parameter without a name"),
+    ({"parameters": {"beta": 1}}, "found no JSON"), ({"name": ["x"]}, "expected texts"),
+])  # fmt: skip
+def test_a_fit_is_not_taken_unchecked(sls, tmp_path, change, words):
+    (tmp_path / "fit.json").write_text(json.dumps(VALID | change))
+    with pytest.raises(vcor.InputError, match=words):
+        Spread.joint(sls, tmp_path / "fit.json")
+
+
+@pytest.mark.parametrize("text", ["[" * 100000, '{"a":' * 100000])
+def test_depth_is_no_fit(sls, tmp_path, text):
+    (tmp_path / "fit.json").write_text(text)
+    with pytest.raises(vcor.InputError, match="found no JSON"):
+        Spread.joint(sls, tmp_path / "fit.json")
 
 
 def test_model_error_is_the_distance_to_the_exact_mechanics(half_space):

@@ -21,7 +21,7 @@ module vcor_c_api
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : history_steps
-   use vcor_io_case_reader, only : override, read_case, read_case_text
+   use vcor_io_case_reader, only : add_materials, override, read_case, read_case_text
    use vcor_io_data_file, only : read_data
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
@@ -39,8 +39,8 @@ module vcor_c_api
    implicit none
    private
 
-   public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
-      vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
+   public :: vcor_library_version, vcor_read, vcor_free, vcor_add_materials, vcor_set, vcor_get, &
+      vcor_describe, vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
       vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
 
    !> Target of a `vcor_case`
@@ -118,6 +118,34 @@ contains
       call c_f_pointer(self, handle)
       deallocate (handle)
    end subroutine vcor_free
+
+   !> Complete a case by materials
+   function vcor_add_materials(self, materials, error) bind(c) result(code)
+      type(c_ptr), value :: self, materials, error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle, other
+      type(error_t), allocatable :: trouble
+      type(case_t) :: added
+
+      call open_case(self, handle, trouble)
+      call demand(materials, 'materials', trouble)
+!$omp critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         call c_f_pointer(materials, other)
+         ! a copy: both may be one
+         added = other%case
+         if (added%is_materials()) then
+            call add_materials(handle%case, added)
+            if (allocated(handle%built_for)) deallocate (handle%built_for)
+         else
+            call raise(trouble, error_input, added%source &
+               //': found other groups, expected &material groups alone')
+         end if
+      end if
+!$omp end critical (vcor_c_api)
+      code = report_error(trouble, error)
+   end function vcor_add_materials
 
    !> Set a value
    function vcor_set(self, address, value, error) bind(c) result(code)

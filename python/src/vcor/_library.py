@@ -6,6 +6,9 @@ import contextlib
 import ctypes
 import functools
 import os
+import queue
+import threading
+from collections.abc import Callable
 from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
 from decimal import Decimal
 from numbers import Real
@@ -134,6 +137,7 @@ _doubles = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
 _texts = POINTER(c_char_p)
 _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_read": [c_char_p, c_char_p, POINTER(c_void_p)],
+    "vcor_add_materials": [c_void_p, c_void_p],
     "vcor_set": [c_void_p, c_char_p, c_char_p],
     "vcor_get": [c_void_p, c_char_p, POINTER(c_void_p)],
     "vcor_describe": [c_void_p, c_char_p, POINTER(ColumnStruct)],
@@ -165,14 +169,84 @@ _library.vcor_library_version.restype = c_char_p
 __version__: str = _library.vcor_library_version().decode()
 
 
+class Handle(c_void_p):
+    """A case of the library, released with the last reference to it, that of a call included."""
+
+    # what modules hold may be gone when the interpreter ends
+    def __del__(self, free: Any = _library.vcor_free) -> None:
+        if self:
+            free(self)
+
+
+#: Longest time for which Ctrl-C may be missed [s]
+_PATIENCE = 0.5
+
+
+class _Worker:
+    """A thread for the calls of the main thread, which Ctrl-C can only reach while it waits."""
+
+    def __init__(self) -> None:
+        self._jobs: queue.SimpleQueue[Callable[[], int] | None] = queue.SimpleQueue()
+        self._codes: queue.SimpleQueue[int] = queue.SimpleQueue()
+        threading.Thread(target=self._work, name="vcor", daemon=True).start()
+
+    def _work(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            self._codes.put(job())
+
+    def code(self, job: Callable[[], int]) -> int:
+        """What a call returns."""
+        self._jobs.put(job)
+        while True:
+            # a signal just before a wait does not end it
+            with contextlib.suppress(queue.Empty):
+                return self._codes.get(timeout=_PATIENCE)
+
+    def end(self) -> None:
+        """End after the present call."""
+        self._jobs.put(None)
+
+
+_worker: _Worker | None = None
+
+
+def _interruptible(job: Callable[[], int]) -> int:
+    """Return what a call returns; Ctrl-C leaves it to end by itself, unheard."""
+    global _worker
+    if threading.current_thread() is not threading.main_thread():
+        return job()
+    # nobody else has it: neither a handler of signals, nor who calls after an interrupt
+    worker, _worker = _worker or _Worker(), None
+    try:
+        code = worker.code(job)
+    except BaseException:
+        worker.end()
+        raise
+    _worker = worker
+    return code
+
+
+def _forget_worker() -> None:
+    """A child of fork has no threads."""
+    global _worker
+    _worker = None
+
+
+os.register_at_fork(after_in_child=_forget_worker)
+#: Functions that end at once
+_QUICK = ("vcor_set", "vcor_get", "vcor_describe")
+
+
 def call(name: str, *arguments: Any) -> str:
     """Call a function of the library; its remark, if it has one."""
     error = _ErrorStruct()
-    given = (
+    given = [
         encoded(one) if kind is c_char_p and not isinstance(one, c_char_p) else one
         for kind, one in zip(_ARGUMENTS[name], arguments, strict=True)
-    )
-    code = getattr(_library, name)(*given, byref(error))
+    ]
+    function = functools.partial(getattr(_library, name), *given, byref(error))
+    # but after an interrupt, what it left may still keep the others waiting
+    code = function() if name in _QUICK and _worker else _interruptible(function)
     message: str = error.message.decode(errors="replace")
     if code:
         raise _KINDS.get(code, Error)(message)
@@ -266,7 +340,3 @@ def columns(table: int) -> dict[str, Column]:
 def is_altered(path: str) -> bool:
     """Whether a file of results ends with a check sum that is not its own."""
     return bool(_library.vcor_is_altered(os.fsencode(path)))
-
-
-#: Release a case
-free_case = _library.vcor_free

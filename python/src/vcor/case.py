@@ -26,12 +26,13 @@ from ._library import (
     InputError,
     NoResultWarning,
     NumericalError,
+    UsageError,
     call,
     encoded,
     numbers,
     whole,
 )
-from ._text import read_text, write
+from ._text import printable, write
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -68,23 +69,17 @@ def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Ca
     InputError
         It is no case.
     """
-    text = None
-    if materials:
-        text = read_text(path, "surrogateescape")
-        for one in map(Path, materials):
-            text += "\n" + with_folder(read_text(one, "surrogateescape"), one.parent.absolute())
-    case = Case.__new__(Case)
-    case._read(text, os.fspath(path))
+    case = _from_file(path)
+    for one in materials:
+        case.add(_from_file(one))
     return case
 
 
-def with_folder(text: str, folder: Path) -> str:
-    """A case whose data files are found from anywhere."""
-    return re.sub(
-        r"(\b(?:shift_)?file\s*=\s*)(['\"])(.*?)\2",
-        lambda found: f"{found[1]}{found[2]}{folder / found[3]}{found[2]}",
-        text, flags=re.IGNORECASE,
-    )  # fmt: skip
+def _from_file(path: str | os.PathLike[str]) -> Case:
+    """The case of a file."""
+    case = Case.__new__(Case)
+    case._read(None, os.fspath(path))
+    return case
 
 
 class Case:
@@ -121,18 +116,20 @@ class Case:
         self.name = name
         # the folder of the process may change
         self._path = str(Path(name).absolute())
-        self._pointer = c_void_p()
+        self._pointer = _library.Handle()
         call("vcor_read", text or c_char_p(), os.fsencode(name), byref(self._pointer))
         if text is None:
             text = Path(name).read_text(encoding="utf-8", errors="surrogateescape")
         self._text = text
+        #: Texts and paths of the materials that complete it
+        self._added: list[tuple[str, str]] = []
         self._settings: dict[str, str] = {}
         self._numbers: dict[str, float] = {}
 
-    # what modules hold may be gone when the interpreter ends
-    def __del__(self, free: Any = _library.free_case) -> None:
-        if getattr(self, "_pointer", None):
-            free(self._pointer)
+    def add(self, materials: Case) -> None:
+        """Complete the case by &material groups, whose data files stay where they are."""
+        call("vcor_add_materials", self._pointer, materials._pointer)
+        self._added = [*self._added, (materials._text, materials._path)]
 
     def __setitem__(self, address: str, value: ArrayLike) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
@@ -160,7 +157,7 @@ class Case:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle: the text and what was set; data files stay where they are."""
-        return _restored, (self._text, self._path, self.name, self._settings)
+        return _restored, (self._text, self._path, self.name, self._settings, self._added)
 
     def __str__(self) -> str:
         """The case as namelists, what was given."""
@@ -171,7 +168,7 @@ class Case:
 
     def copy(self) -> Case:
         """Another case of the same values."""
-        return _restored(self._text, self._path, self.name, self._settings)
+        return _restored(self._text, self._path, self.name, self._settings, self._added)
 
     def text(self, *, complete: bool = False) -> str:
         """The case as namelists, with `complete` also every default; the case is checked."""
@@ -181,7 +178,7 @@ class Case:
         """Write the case to a file that the program reads; data files stay where they are."""
         text, folder = self.text(complete=complete), Path(self._path).parent
         if Path(path).absolute().parent != folder:
-            text = with_folder(text, folder)
+            text = _from_anywhere(text, folder)
         write(Path(path), text.encode())
 
     def material(self, name: str) -> Material:
@@ -211,6 +208,7 @@ class Case:
             A single impact has no result. If it sticks, or does not separate within end_time, the
             summary is in the attribute `result`.
         """
+        _threads(threads)
         axes = self._axes()
         if axes:
             return self.sweep(axes, threads=threads, progress=progress)
@@ -435,13 +433,11 @@ class Case:
         progress: bool | None,
     ) -> Floats:
         """Solve points in parts that take a moment each, for the bar and Ctrl-C."""
-        if threads is None:
-            threads = int(os.environ.get("SLURM_CPUS_PER_TASK", "0"))
-        else:
-            threads = whole(threads, "threads", 1, _MOST_THREADS)
+        threads = _threads(threads)
         results = np.empty((len(table), len(names)))
         remarks = []
-        length, start = 64, 0
+        # a round of points, until it is known how long one takes
+        length, start = threads or len(os.sched_getaffinity(0)), 0
         with progress_bar(len(table), progress) as bar:
             while start < len(table):
                 part = slice(start, start + length)
@@ -452,7 +448,7 @@ class Case:
                     remarks.append(remark)
                 bar.update(min(length, len(table) - start))
                 start += length
-                length = max(16, min(4 * length, int(length * _CHUNK_TIME / max(elapsed, 1e-6))))
+                length = max(1, min(4 * length, int(length * _CHUNK_TIME / max(elapsed, 1e-6))))
         if remarks:
             lost = sum(int(remark.split(" ", 1)[0]) for remark in remarks)
             warnings.warn(
@@ -545,13 +541,30 @@ class Material:
         return factor.value
 
 
-def _restored(text: str, path: str, name: str, settings: Mapping[str, str]) -> Case:
+def _restored(
+    text: str,
+    path: str,
+    name: str,
+    settings: Mapping[str, str],
+    added: Sequence[tuple[str, str]] = (),
+) -> Case:
     """A case from its pickle; data files are found from the folder where it was."""
     case = Case(text, name=path)
     case.name = name
+    for one in added:
+        case.add(Case(one[0], name=one[1]))
     for address, value in settings.items():
         case[address] = value
     return case
+
+
+def _from_anywhere(text: str, folder: Path) -> str:
+    """A case as it is printed, a key a line, with the data files of a folder by absolute paths."""
+    return re.sub(
+        r"(?m)^(   (?:shift_)?file = )('(?:[^']|'')*')$",
+        lambda found: found[1] + _written(str(folder / str(_value(found[2]))), "file"),
+        text,
+    )
 
 
 def number(case: Case, address: str, missing: float = math.nan) -> float:
@@ -634,6 +647,18 @@ def scalars(values: Mapping[str, float] | None) -> dict[str, float]:
     if values is None or isinstance(values, Mapping) and not values:
         return {}
     return {name: float(one[0]) for name, one in arrays(values, 0, "a number").items()}
+
+
+def _threads(given: int | None) -> int:
+    """Number of threads; None: what SLURM gives, or 0 for those that the library takes."""
+    if given is not None:
+        return whole(given, "threads", 1, _MOST_THREADS)
+    name = "SLURM_CPUS_PER_TASK"
+    word = os.environ.get(name, "").strip()
+    if word and not word.isdecimal():
+        raise UsageError(f"{name}: found '{printable(word):.60}', expected a whole number from 1 "
+                         f"to {_MOST_THREADS}")  # fmt: skip
+    return whole(int(word), name, 1, _MOST_THREADS) if word else 0
 
 
 def _names(quantities: Sequence[str] | None) -> list[str]:

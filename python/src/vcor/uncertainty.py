@@ -7,7 +7,6 @@ import contextlib
 import json
 import math
 import os
-import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,8 +18,17 @@ import xarray as xr
 from scipy.special import ndtri
 
 from . import _command, _library, _text
-from ._library import MOST_SEED, Floats, InputError, NumericalError, UsageError, whole, within
-from .case import MOST_POINTS, Case, as_case, listed, read, with_folder, with_material
+from ._library import (
+    MOST_SEED,
+    Floats,
+    InputError,
+    NumericalError,
+    UsageError,
+    numbers,
+    whole,
+    within,
+)
+from .case import MOST_POINTS, Case, as_case, listed, read, with_material
 from .materials.observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
@@ -93,30 +101,8 @@ class Spread:
     @classmethod
     def joint(cls, case: Case, source: Any) -> tuple[Case, Spread]:
         """Parameters with a covariance, by the JSON of a fit, and the case with what was found."""
-        folder = Path.cwd()
-        if not isinstance(source, Mapping):
-            folder, name = Path(source).parent.absolute(), source
-            try:
-                source = json.loads(_text.read_text(name, "strict"))
-            except ValueError:
-                raise InputError(f"--covariance {name}: found no JSON of vcor fit or "
-                                 "identify") from None  # fmt: skip
-        try:
-            prefix = f"{source['name']}." if "name" in source else ""
-            rows = source["parameters"]
-            addresses = [
-                row["name"] if "." in row["name"] else prefix + row["name"] for row in rows
-            ]
-            values = np.array([float(row["value"]) for row in rows])
-            covariance = np.array(source["covariance"], dtype=float)
-            group, note = source.get("group"), source.get("note")
-        except (AttributeError, KeyError, TypeError, ValueError):
-            raise InputError("--covariance: found no JSON of vcor fit or identify") from None
-        for row, address in zip(rows, addresses, strict=True):
-            if row.get("standard_error", 0) is None:
-                raise InputError(f"--covariance: {address} is at its bound, without a standard "
-                                 "error: identify the others with --fix and take its interval "
-                                 f"with --vary {address}=LOW:HIGH")  # fmt: skip
+        fit = _Fit.read(source)
+        values, covariance = fit.values, fit.covariance
         # what a fit has brought to 0 stays there: it has no logarithm
         kept = np.flatnonzero((np.diag(covariance) > 0) & (values > 0))
         if not kept.size:
@@ -125,12 +111,12 @@ class Spread:
         weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
         if weights.min() < -1e-8 * weights.max():
             raise InputError("--covariance: the matrix is not positive")
-        if note:
-            warnings.warn(f"--covariance: {note}", stacklevel=3)
-        if group:
-            case = _with_group(case, prefix[:-1], with_folder(group, folder))
+        if fit.note:
+            warnings.warn(f"--covariance: {fit.note}", stacklevel=3)
+        if fit.group:
+            case = _with_group(case, fit)
         for i in kept:
-            case[addresses[i]] = float(values[i])
+            case[fit.addresses[i]] = float(values[i])
         values, root = values[kept], vectors * np.sqrt(weights.clip(0))
 
         def ends(elastic: Floats) -> Floats:
@@ -140,8 +126,67 @@ class Spread:
             moved: Floats = values * np.exp((pull @ root.T)[:, None] * np.array([[-1], [1]]))
             return moved
 
-        return case, cls("covariance", [addresses[i] for i in kept],
+        return case, cls("covariance", [fit.addresses[i] for i in kept],
                          lambda share: values * np.exp(ndtri(share) @ root.T), ends)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """What JSON of vcor fit or identify says of parameters: nothing of it is taken unchecked."""
+
+    path: str
+    #: Name of the material, empty if the addresses have it
+    name: str
+    addresses: list[str]
+    values: Floats
+    covariance: Floats
+    #: Group &material and a remark, empty if there is none
+    group: str
+    note: str
+
+    @classmethod
+    def read(cls, source: Any) -> _Fit:
+        """The parameters of a file or of its contents."""
+        path, named = "", "--covariance"
+        if not isinstance(source, Mapping):
+            path = os.fspath(source)
+            named += f" {path}"
+            try:
+                source = json.loads(_text.read_text(path, "strict"))
+            except (ValueError, RecursionError):
+                source = None
+        wrong = InputError(f"{named}: found no JSON of vcor fit or identify")
+        if not isinstance(source, Mapping) or not isinstance(source.get("parameters"), list):
+            raise wrong
+        name, group, note = (source.get(key) or "" for key in ("name", "group", "note"))
+        rows = source["parameters"]
+        if not all(isinstance(one, str) for one in (name, group, note)):
+            raise InputError(f"{named}: expected texts as name, group and note")
+        addresses = []
+        for row in rows:
+            if not isinstance(row, Mapping) or not isinstance(row.get("name"), str):
+                raise InputError(f"{named}: found a parameter without a name")
+            addresses.append(row["name"] if "." in row["name"] else f"{name}.{row['name']}")
+            if row.get("standard_error", 0) is None:
+                raise InputError(
+                    f"{named}: {addresses[-1]} is at its bound, without a standard error: identify "
+                    f"the others with --fix and take its interval with --vary {addresses[-1]}"
+                    "=LOW:HIGH"
+                )
+        n = len(rows)
+        try:
+            values = numbers([row["value"] for row in rows], "value")
+            covariance = numbers(source["covariance"], "covariance", 2)
+        except (KeyError, InputError):
+            raise wrong from None
+        if covariance.shape != (n, n) or not np.isfinite(covariance).all():
+            raise InputError(f"{named}: expected a covariance of {n} x {n} finite numbers")
+        if not np.isfinite(values).all():
+            raise InputError(f"{named}: expected finite values of the parameters")
+        size = np.sqrt(np.abs(np.diag(covariance)))
+        if (np.abs(covariance - covariance.T) > 1e-6 * np.outer(size, size)).any():
+            raise InputError(f"{named}: the covariance is not symmetrical")
+        return cls(path, name, addresses, values, covariance, group, note)
 
 
 @dataclass(frozen=True)
@@ -395,12 +440,14 @@ def _checked(quantities: Sequence[str]) -> list[str]:
     return quantities
 
 
-def _with_group(case: Case, name: str, group: str) -> Case:
-    """The case with a &material group in the place of its own of this name, whose density stays."""
-    density = case[f"{name}.density"]
-    if density is not None and not re.search(r"(?m)^\s*density\s*=", group):
-        group = group.replace("\n", f"\n   density = {density}\n", 1)
-    return with_material(case, name, lambda _: group)
+def _with_group(case: Case, fit: _Fit) -> Case:
+    """The case with the group of a fit in the place of its own material, whose density stays."""
+    density = case[f"{fit.name}.density"]
+    case = with_material(case, fit.name, lambda _: "")
+    case.add(Case(fit.group, name=fit.path or "fit.json"))
+    if density is not None and case[f"{fit.name}.density"] is None:
+        case[f"{fit.name}.density"] = density
+    return case
 
 
 def _swing(
