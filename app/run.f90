@@ -4,7 +4,7 @@ module vcor_app_run
    use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
       replacement_note, write_files, write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : report, short, significant
+   use vcor_app_screen, only : report, short
    use vcor_app_validity, only : about_numbers, beyond_data, joined, measures_remark, &
       measures_report, mechanics_of, solve_exact, warn_of_bands
    use vcor_error, only : error_numerical, error_t, raise
@@ -16,7 +16,8 @@ module vcor_app_run
    use vcor_text, only : integer_text
    use vcor_io_results, only : history_table, summary_table
    use vcor_io_table, only : table_t
-   use vcor_kinds, only : pi, wp
+   use vcor_kinds, only : wp
+   use vcor_solver_type, only : light_plate
    use vcor_sweep_quantity, only : new_summary, summary_t, values_of
    use vcor_sweep_points, only : solve_point, worker_t
    use vcor_verify_models, only : model_t
@@ -197,37 +198,29 @@ contains
       !> Error of code `error_numerical`; unallocated if the bodies separated or rest
       type(error_t), allocatable, intent(out) :: error
 
-      ! An elastic plate leaves 0.68/lambda^5 of the velocity if lambda > 3, at most 3e-3: it takes
-      ! up the blow, whatever the time. A time of the user's that is shorter says nothing yet
-      real(wp), parameter :: light = 3.0_wp, share = 0.68_wp
       character(len=:), allocatable :: time, too_light, reason
-      real(wp) :: lambda, scale
-      logical :: is_light, was_short
+      logical :: was_short
 
       if (any(outcome%status == [contact_separated, contact_resting])) return
       associate (impact => job%sweep%problem%impact, &
                  last => trajectory%state(1, trajectory%last))
          time = short(last)
-         scale = impact%time_scale()
-         lambda = impact%inelasticity_at(pi/(impact%law%contact_time*scale))
-         is_light = lambda > light
-         was_short = job%case%given('solver', 'end_time') .and. last < impact%patience(scale)
+         too_light = trim(light_plate(impact))
+         ! an end of the user's that is early says nothing yet
+         was_short = job%case%given('solver', 'end_time') &
+            .and. last < impact%patience(impact%time_scale())
       end associate
-      too_light = 'the plate is too light: with an inelasticity lambda of ' &
-         //trim(adjustl(significant(lambda, 3)))//' by the storage modulus it takes up the ' &
-         //'blow, and about 0.68/lambda^5 = '//short(share/max(lambda, light)**5) &
-         //' of the velocity comes back; take a larger plate.half_thickness or a lighter sphere'
       if (outcome%status == contact_lasting) then
          reason = 'give a longer solver.end_time; with method direct a contact shorter than its ' &
             //'steps is missed, give a shorter solver.time_step'
-         if (is_light .and. .not. was_short) reason = too_light
+         if (too_light /= '' .and. .not. was_short) reason = too_light
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
             //'within '//time//' s: '//reason)
       else
          reason = 'the losses in the material leave no rebound'
          if (.not. job%sweep%problem%impact%modulus%rubbery() > 0.0_wp) &
             reason = 'the material, without equilibrium modulus, does not push it back'
-         if (is_light) reason = too_light
+         if (too_light /= '') reason = too_light
          call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &
             //time//' s all motion has died out in contact; '//reason)
       end if

@@ -363,6 +363,17 @@ def test_plate_too_light(sls, waves, thickness, status):
     assert "end_time" not in line
 
 
+def test_advice_that_can_be_followed(sls):
+    """No method sends to the other one in a circle: auto tries both, and a light plate is named by its lambda."""
+    light = ["--set", "plate.half_thickness=5e-4", "--set", "contact.law=receding", "--print", "status"]
+    for method in ("auto", "ive", "direct"):
+        line = complaint(sls("run", "case.nml", *light, "--set", f"solver.method={method}"), NUMERICAL, "too light")
+        assert "use method" not in line and "end_time" not in line and "lambda" in line
+    few = ["--set", "solver.method=direct", "--set", "solver.time_step=1e-9", "--print", "status"]
+    line = complaint(sls("run", "case.nml", *few), NUMERICAL, "more steps")
+    assert "method = 'auto' tries the other method" in line
+
+
 def test_rebound_from_a_light_plate(vcor):
     """Where lambda is large, the elastic sphere on Zener's plate keeps 0.68/lambda^5."""
     vcor.write(case_text("elastic"))

@@ -178,8 +178,7 @@ contains
 
       if (impact%plate%moves() .or. impact%gravity > 0.0_wp) then
          call raise(error, error_numerical, "the contact grows again before it has ended, as on " &
-            //"a plate that is too light for the sphere, which method = 'ive' does not follow: " &
-            //"use method = 'direct'")
+            //"a plate that is too light for the sphere, which method = 'ive' does not follow")
       else
          call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
             //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")

@@ -84,7 +84,7 @@ contains
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
          if (.not. modes%contact%error < 1.0_wp) then
             call raise(error, error_numerical, 'no sum of exponentials stands for the kernel of ' &
-               //"this contact: use method = 'direct'")
+               //'this contact')
             return
          end if
          if (impact%plate%hereditary()) then
@@ -93,7 +93,7 @@ contains
             if (impact%plate%layered()) modes%plate%error = misfit%motion*impact%mass/window**2
             if (.not. modes%plate%error < 1.0_wp) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
-                  //"plate remembers: use another plate.waves, or method = 'direct'")
+                  //'plate remembers: use another plate.waves')
                return
             end if
          end if

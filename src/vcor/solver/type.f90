@@ -5,11 +5,11 @@ module vcor_solver_type
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_resting, contact_separated, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, method_for
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, method_for, light_plate
 
    !> Length of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')
@@ -96,7 +96,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       character(len=*), parameter :: advice(2) = [character(len=59) :: &
-         "use method = 'direct' or give a larger solver.accuracy", &
+         'give a larger solver.accuracy', &
          'give a larger solver.accuracy or a shorter solver.time_step']
       character(len=*), parameter :: asked(2) = [character(len=19) :: &
          "that a layer allows", 'asked for']
@@ -135,10 +135,39 @@ contains
          //'term of the Volterra series, about '//as_text(abs(ratio))//' times the first, ' &
          //trim(fault(merge(1, 2, ratio < 0.0_wp)))//': give a solver.volterra_coefficient ' &
          //'nearer to 0')
-      if (.not. impact%plate%layered()) return
-      if (impact%plate%footprint < impact%expected_radius(scale)) &
-         call refuse_footprint(impact, error)
+      if (impact%plate%layered()) then
+         if (impact%plate%footprint < impact%expected_radius(scale)) &
+            call refuse_footprint(impact, error)
+         if (solver%settings%method /= 'direct') &
+            error%message = error%message//"; use method = 'direct'"
+      else if (light_plate(impact) /= '') then
+         error%message = error%message//'; '//trim(light_plate(impact))
+      else if (any(solver%settings%method == ['ive   ', 'direct']) &
+               .and. solver%settings%scheme == 'product') then
+         ! the only advice about methods: it ends there, as auto has no other one to go to
+         error%message = error%message//"; method = 'auto' tries the other method, too"
+      end if
    end subroutine solve_impact
+
+   !> Why a plate that is too light for the sphere has no rebound, or next to none, whatever the
+   !> time: an elastic one leaves 0.68/lambda^5 of the velocity if lambda > 3, at most 3e-3
+   pure function light_plate(impact) result(text)
+      type(impact_t), intent(in) :: impact
+      !> In words, with lambda by the storage moduli at pi over the elastic contact time; blank if
+      !> the plate is not light. Of fixed length, see `as_text`
+      character(len=280) :: text
+
+      real(wp), parameter :: light = 3.0_wp, share = 0.68_wp
+      real(wp) :: lambda
+
+      text = ''
+      lambda = impact%inelasticity_at(pi/(impact%law%contact_time*impact%time_scale()))
+      if (.not. lambda > light) return
+      text = 'the plate is too light: with an inelasticity lambda of '//as_text(lambda) &
+         //' by the storage modulus it takes up the blow, and about 0.68/lambda^5 = ' &
+         //as_text(share/lambda**5)//' of the velocity comes back; take a larger ' &
+         //'plate.half_thickness or a lighter sphere'
+   end function light_plate
 
    !> Refuse a footprint that takes away more dent than the contact has: the equations have no
    !> solution, and what a solver finds because it does not resolve the fastest waves is none

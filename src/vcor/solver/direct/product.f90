@@ -355,7 +355,7 @@ contains
             //"integration can make then: use law = 'boltzmann'")
       else
          call raise(error, error_numerical, 'the end of this contact takes more steps than ' &
-            //"product integration can make: use method = 'ive' or a longer solver.time_step")
+            //'product integration can make')
       end if
    end subroutine give_up
 

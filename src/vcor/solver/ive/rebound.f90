@@ -95,7 +95,7 @@ contains
             if (rebound%problem%modes%contact%error > rebound%accuracy) then
                call raise(error, error_numerical, 'the contact seems to grow again before it ' &
                   //'has ended, which may be the error of the sum of exponentials that stands ' &
-                  //"for the material: use method = 'direct'")
+                  //'for the material')
                return
             end if
             ! a contact that its weight makes grow again may not separate any more
