@@ -192,7 +192,7 @@ DASHPOT = "model = 'prony', equilibrium_modulus = {}, viscosity = {}"
 # sphere and sheet go along with each other, and the indentation is largest for so long that a rest of its velocity
 # counts there
 SHEETS = {
-    "the bodies do not separate .* the plate is too light: .* lambda of \S+ ": (
+    r"the bodies do not separate .* the plate is too light: .* lambda of \S+ ": (
         (0.411059, 0.00101734, 2.19052e-05, 7800, 399.979, 0.35, DASHPOT.format("2.59104e8", "8723.5"))
     ),
     "the force is largest before the sum .* take a larger plate.half_thickness, a lighter sphere, or method": (
