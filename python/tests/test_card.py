@@ -463,7 +463,10 @@ def test_the_command_both_ways(tmp_path, capsys, program):
         "--output", card, "--units", "mm-t-s",
     )  # fmt: skip
     assert found.out == "" and "exponentials in place of model power_law" in found.err
-    assert card.read_text().startswith("** vcor card 'butyl', units mm-t-s: moduli in 1e+06 Pa")
+    assert card.read_text().startswith(
+        "** vcor card for abaqus in units mm-t-s: moduli in 1e+06 Pa, temperatures in K\n"
+        "** material 'butyl'\n"
+    )
     group = tmp_path / "group.nml"
     command(capsys, card, "--output", group)
     text = (PAPER / "butyl_power_law.nml").read_text()

@@ -19,7 +19,8 @@ from .materials.data import ZERO_C, is_temperature
 from .results import open as open_results
 
 Source = str | os.PathLike[str] | xr.Dataset
-_IMPACT = """
+#: An impact on a material
+IMPACT = """
 &impact velocity = 1.0 /
 &sphere radius = 1.0, mass = 1.0, material = '{0}' /
 &plate material = '{0}', waves = 'none' /
@@ -99,13 +100,14 @@ def material_case(
 ) -> tuple[Case, list[str], bool]:
     """A case, or &material groups with an impact on one of them; names, whether it has its own."""
     text = read_text(path)
-    given = re.sub(r"(?m)^\s*!.*", "", text)
-    names = [one[1:-1].replace(one[0] * 2, one[0]) for one in re.findall(
-        r"(?i)\bname\s*=\s*('(?:[^']|'')+'|\"(?:[^\"]|\"\")+\")", given)]  # fmt: skip
+    quoted = r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\""
+    # what is in a comment or in another text is none
+    found = re.finditer(rf"(?i)!.*|\bname\s*=\s*({quoted})|{quoted}", text)
+    names = [one[1][1:-1].replace(one[1][0] * 2, one[1][0]) for one in found if one[1]]
     if not names:
         raise InputError(f"{os.fspath(path)}: there is no material with a name in this file")
     has_impact = re.search(r"(?im)^\s*&impact\b", text) is not None
-    text += "" if has_impact else _IMPACT.format((material or names[0]).replace("'", "''"))
+    text += "" if has_impact else IMPACT.format((material or names[0]).replace("'", "''"))
     return Case(text, name=os.fspath(path)), names, has_impact
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from .._library import InputError, UsageError
+from .._text import printable
 from ..case import _written
 
 #: Gas constant [J/(mol K)]
@@ -109,10 +110,11 @@ class Card:
         if flaw := form.flaw(self):
             raise InputError(f"{self.name}: {flaw}")
         size = 1 / Card("", 0, 1, (), ()).within(units).equilibrium_modulus
-        head = [f"vcor card '{self.name}', units {units}: moduli in {size:g} Pa, temperatures in K"]
-        head += self.notes(code)
-        rows = itertools.chain(*(textwrap.wrap(text, 78 - len(form.comment)) for text in head))
-        return "\n".join([*(form.comment + row for row in rows), *form.write(card)]) + "\n"
+        # what is read back is a line each, whatever its length; notes are wrapped
+        head = [f"vcor card for {code} in units {units}: moduli in {size:g} Pa, temperatures in K",
+                f"material '{self.name}'"]  # fmt: skip
+        head += [row for note in self.notes(code) for row in textwrap.wrap(note, 76)]
+        return "\n".join([*(form.comment + row for row in head), *form.write(card)]) + "\n"
 
     def notes(self, code: str) -> list[str]:
         """What is to be known of the card of a program."""
@@ -135,8 +137,10 @@ class Card:
         }  # fmt: skip
         given = {key: _rounded(value) for key, value in keys.items() if value is not None}
         rows = [f"   {key} = {_written(value, key)}" for key, value in given.items()]
-        body = [line for row in rows for line in textwrap.wrap(row, 98, subsequent_indent=" " * 6)]
-        head = [f"! {line}" for text in self.remarks for line in textwrap.wrap(text, 96)]
+        # only lists of numbers are wrapped: a text is one line
+        body = [line for row in rows for line in ([row] if "'" in row else
+                textwrap.wrap(row, 98, subsequent_indent=" " * 6))]  # fmt: skip
+        head = [f"! {line}" for text in self.remarks for line in textwrap.wrap(printable(text), 96)]
         return "\n".join([*head, "&material", *body, "/"]) + "\n"
 
 
@@ -162,9 +166,31 @@ class Format:
     fluid: bool = False
     #: Poisson's ratio that the program takes for another
     forbidden: float | None = None
+    #: Most letters of the name, how it must not begin, and what it must not contain; 0: the name is
+    #: in a comment alone
+    title: int = 0
+    marks: str = ""
+    quote: str = ""
+
+    def name_flaw(self, name: str) -> str:
+        """Why the program would take the name for something else, empty if it would not."""
+        if printable(name) != name:
+            return "its name has a control character, expected a text that can be read on one line"
+        if not self.title:
+            return ""
+        if len(name.rstrip()) > self.title:
+            return f"the card holds names of {self.title} letters, expected a shorter one"
+        if not name.strip() or name.startswith(tuple(self.marks)):
+            return f"the name '{name}' begins with '{name[:1]}', which the program reads as " \
+                   "something else; expected another one"  # fmt: skip
+        if self.quote and self.quote in name:
+            return f"the card cannot hold a name with {self.quote}, expected another one"
+        return ""
 
     def flaw(self, card: Card) -> str:
         """Why the card cannot hold a material, empty if it can."""
+        if flaw := self.name_flaw(card.name):
+            return flaw
         n = len(card.moduli) + (self.constant and card.equilibrium_modulus > 0)
         shift, nu = str(card.shift.get("shift", "")), card.poisson_ratio
         if n > self.terms:
@@ -194,10 +220,15 @@ class Source:
     use_shift: bool = True
 
     def __post_init__(self) -> None:
-        self.lines = [(i, line.rstrip()) for i, line in enumerate(self.text.splitlines(), 1)]
-        heads = [re.search(r"vcor card '(.*)', units (\S+):", line) for _, line in self.lines]
-        made = next(filter(None, heads), None)
-        self.name, given = (made[1], made[2]) if made else (Path(self.path).stem, "SI")
+        # no other character ends a line of these programs
+        self.lines = [(i, line.rstrip()) for i, line in enumerate(self.text.split("\n"), 1)]
+        made = head_of(self.text)
+        if made is None and not self.units and re.search(r"(?i)vcor card", self.text):
+            self.fail(0, "the head that vcor wrote is damaged or old, expected --units")
+        given = made[2] if made else "SI"
+        self.name = Path(self.path).stem
+        if made and (title := re.search(r"(?m)^\S{1,2} material '(.*)'$", self.text)):
+            self.name = title[1]
         if made and self.units not in ("", given):
             self.fail(0, f"the card is in units {given}, found --units {self.units}")
         self.units = self.units or given
@@ -206,6 +237,13 @@ class Source:
                 f"{self.path}: unknown units '{self.units}', known: {', '.join(UNITS)}"
             )
         self.remarks = [] if made else [f"the card is read in units {self.units}, and kelvin"]
+
+    def once(self, found: Sequence[tuple[str, int]]) -> None:
+        """Refuse names of materials that are there twice: only one of them would be read."""
+        names = [name for name, _ in found]
+        for name, line in found:
+            if names.count(name) > 1:
+                self.fail(line, f"found several materials '{name}', expected different names")
 
     def fail(self, line: int, message: str) -> NoReturn:
         """Refuse the card."""
@@ -261,7 +299,13 @@ class Source:
         if modulus is None or ratio is None:
             self.fail(0, "the card has no elastic constants, expected --modulus (at time zero, in "
                          "the units of the card) and --poisson-ratio")  # fmt: skip
-        return modulus, ratio
+        return modulus, self.ratio(0, ratio)
+
+    def ratio(self, line: int, value: float) -> float:
+        """Poisson's ratio, refused where no material has it."""
+        if not -1 < value <= 0.5:
+            self.fail(line, f"found Poisson's ratio {value:g}, expected in (-1, 0.5]")
+        return value
 
     # fmt: off
     def card(
@@ -274,8 +318,7 @@ class Source:
         if not shear or rest < 0 or min(min(one) for one in shear) <= 0:
             self.fail(line, "expected moduli and times > 0 that leave a long-time modulus >= 0")
         total = math.fsum([rest, *(term for term, _ in shear)])
-        if not -1 < ratio <= 0.5:
-            self.fail(line, f"found Poisson's ratio {ratio:g}, expected in (-1, 0.5]")
+        self.ratio(line, ratio)
         remarks, given = list(self.remarks), self.poisson_ratio
         if given is None and ratio < 0.5 and not bulk:
             remarks.append(
@@ -297,6 +340,11 @@ class Source:
                     tuple(time for _, time in shear), density or None, shift, tuple(remarks),
                     self.units).within("SI")
     # fmt: on
+
+
+def head_of(text: str) -> re.Match[str] | None:
+    """Program and units that vcor has written in the first line of a card, None if it has not."""
+    return re.match(r"\S{1,2} vcor card for (\S+) in units (\S+): ", text)
 
 
 def _ratio(bulk: float, shear: float) -> float:
@@ -366,9 +414,11 @@ def _read_abaqus(source: Source) -> Card:
         word, *pairs = head.split(",")
         options = dict(re.sub(r"\s", "", pair).upper().partition("=")[::2] for pair in pairs)
         title = re.search(r'(?i)\bname\s*=\s*("[^"]*"|[^,]*)', head)
-        name = title[1].strip(' "') if title else ""
+        name = title[1].strip() if title else ""
+        name = name[1:-1] if name.startswith('"') else name
         blocks.append((word.strip().upper(), i, options, lines, name))
     starts = [k for k, block in enumerate(blocks) if block[0] == "MATERIAL"] + [len(blocks)]
+    source.once([(blocks[a][4], blocks[a][1]) for a in starts[:-1]])
     parts = {blocks[a][4]: blocks[a:b] for a, b in itertools.pairwise(starts)}
     viscous = [n for n, part in parts.items() if any(one[0] == "VISCOELASTIC" for one in part)]
     name = source.choose(viscous)
@@ -390,6 +440,7 @@ def _read_abaqus(source: Source) -> Card:
     if not options.get("TYPE", "ISO").startswith("ISO") or len(constants) > 1:
         source.fail(line, "expected isotropic constants at one temperature")
     long_term = not options.get("MODULI", "LONG").startswith("INST")
+    source.ratio(line, constants[0][1])
     _, line, options, *_ = found["VISCOELASTIC"]
     if options.get("TIME") != "PRONY":
         source.fail(line, "expected *VISCOELASTIC, TIME=PRONY")
@@ -539,7 +590,7 @@ def _write_one_term(card: Card) -> list[str]:
 
 
 def _read_lsdyna(source: Source) -> Card:
-    found, long = {}, False
+    cards, long = [], False
     for i, head, lines in source.blocks("*", ("$",)):
         word = (head.upper().split() or [""])[0]
         if word == "KEYWORD":
@@ -548,7 +599,9 @@ def _read_lsdyna(source: Source) -> Card:
         if word.startswith("MAT_") and kind in _DYNA:
             width = 20 if word.endswith("+") or long and not word.endswith("-") else 10
             title = lines.pop(0)[1].strip() if "_TITLE" in word and lines else source.name
-            found[title] = i, _DYNA[kind], lines, width
+            cards.append((title, i, _DYNA[kind], lines, width))
+    source.once([(title, i) for title, i, *_ in cards])
+    found = {title: (i, count, lines, width) for title, i, count, lines, width in cards}
     name = source.choose(list(found))
     line, count, lines, width = found[name]
     if len(lines) < (1 if count == 6 else 3):
@@ -626,11 +679,20 @@ def _write_boltzman(card: Card) -> list[str]:
 
 
 def _read_openradioss(source: Source) -> Card:
-    blocks = {}
+    blocks: dict[tuple[str, str, str], tuple[int, list[Line]]] = {}
     for i, head, lines in source.blocks("/", ("#", "$")):
         kind, law, number, *_ = [*head.upper().split("/"), "", ""]
+        if kind in ("MAT", "VISC") and (kind, law, number) in blocks:
+            source.fail(i, f"found a second /{kind}/{law}/{number}")
         blocks[kind, law, number] = i, lines
     laws = {"LAW34": 1, "BOLTZMAN": 1, "LAW42": 0, "OGDEN": 0}
+    source.once(
+        [
+            ((lines or [(0, "")])[0][1].strip(), i)
+            for (kind, law, _), (i, lines) in blocks.items()
+            if kind == "MAT" and law in laws
+        ]
+    )
     found = {(lines or [(0, "")])[0][1].strip(): (i, laws[law], number, lines[1:])
              for (kind, law, number), (i, lines) in blocks.items()
              if kind == "MAT" and law in laws}  # fmt: skip
@@ -713,16 +775,18 @@ _MIXED = "hybrid or mixed elements, or --poisson-ratio 0.495"
 #: Formats by name
 FORMATS = {
     "abaqus": Format("** ", _write_abaqus, _read_abaqus, _SHIFTS, dense=False,
-                     incompressible=_MIXED),
+                     incompressible=_MIXED, title=80, quote='"'),
     "ansys": Format("! ", _write_ansys, _read_ansys, _SHIFTS | {"arrhenius": _TN}, dense=False,
                     incompressible=_MIXED),
-    "ansys-mpl": Format("/COM,", _write_mpl, _read_ansys, _SHIFTS | {"arrhenius": _TN},
+    "ansys-mpl": Format("! ", _write_mpl, _read_ansys, _SHIFTS | {"arrhenius": _TN},
                         dense=False, incompressible=_MIXED),
     "lsdyna": Format("$ ", _write_general, _read_lsdyna, _SHIFTS | {"wlf": _DYNA_WLF}, terms=18,
-                     constant=True, fluid=True),
-    "lsdyna-006": Format("$ ", _write_one_term, _read_lsdyna, bulk=False, terms=1, fluid=True),
-    "openradioss": Format("# ", _write_ogden, _read_openradioss, forbidden=0.0),
+                     constant=True, fluid=True, title=80, marks="*$ "),
+    "lsdyna-006": Format("$ ", _write_one_term, _read_lsdyna, bulk=False, terms=1, fluid=True,
+                         title=80, marks="*$ "),
+    "openradioss": Format("# ", _write_ogden, _read_openradioss, forbidden=0.0,
+                          title=100, marks="/#$ "),
     "openradioss-law34": Format("# ", _write_boltzman, _read_openradioss, bulk=False, terms=1,
-                                fluid=True),
+                                fluid=True, title=100, marks="/#$ "),
     "comsol": Format("% ", _write_comsol, _read_comsol, _SHIFTS, bulk=False, dense=False),
 }  # fmt: skip

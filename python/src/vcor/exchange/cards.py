@@ -15,8 +15,8 @@ import numpy as np
 from .. import _command, _text
 from .._library import InputError, NumericalError, UsageError, numbers, whole, within
 from ..case import MOST_POINTS, Case, number
-from ..sources import material_case
-from .card_formats import FORMATS, UNITS, Card, Source, Terms
+from ..sources import IMPACT, material_case
+from .card_formats import FORMATS, UNITS, Card, Source, Terms, head_of
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)
@@ -229,6 +229,8 @@ def read_card(
     if modulus is not None:
         within(modulus, "modulus", 0, math.inf)
     text = _text.read_text(path)
+    if code is None and (head := head_of(text)):
+        code = head[1]
     if code is None:
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
     if code not in FORMATS:
@@ -237,7 +239,24 @@ def read_card(
             raise InputError(f"{os.fspath(path)}: found no card, {expected}")
         raise UsageError(f"unknown program '{code}', {expected}")
     source = Source(os.fspath(path), text, material, units or "", modulus, poisson_ratio, use_shift)
-    return FORMATS[code].read(source)
+    try:
+        made = FORMATS[code].read(source)
+    except InputError:
+        raise
+    except (ArithmeticError, ValueError):
+        source.fail(0, "its numbers are beyond the range of vcor, expected a card in other --units")
+    _check(made, source)
+    return made
+
+
+def _check(made: Card, source: Source) -> None:
+    """Refuse a material that vcor would not read."""
+    impact = IMPACT.format(made.name.replace("'", "''"))
+    try:
+        Case(impact + str(made)).text()
+    except InputError as error:
+        why = str(error).partition(": ")[2]
+        source.fail(0, f"the card makes a group that vcor refuses: {why}")
 
 
 #: What a file of each program has
@@ -278,7 +297,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _work(options: argparse.Namespace) -> None:
     nu = options.poisson_ratio
-    if re.search(r"(?im)^\s*&material\b", _text.read_text(options.file)):
+    text = _text.read_text(options.file)
+    if not head_of(text) and re.search(r"(?im)^\s*&material\b", text):
         if not options.code:
             raise UsageError(f"{options.file} is a case, expected --material and --for")
         options.material = options.material or _only(options.file)
