@@ -5,6 +5,7 @@ module vcor_app_help
       package_commands, page_of, texts_of
    use vcor_app_external, only : external_commands
    use vcor_case_catalogue, only : described_keys, groups, key_t, kind_name, range_text
+   use vcor_case_choices, only : choices, topics
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
    use vcor_number, only : interval_text
    use vcor_json, only : array, member, object, strings, words
@@ -184,8 +185,8 @@ contains
          do j = 1, size(keys)
             associate (key => keys(j))
                if (key%group == groups(i)%name) call show("input", item("   "//key%name, &
-                  about(key)), trim(key%group)//" "//trim(key%name)//" "//trim(key%group)//"." &
-                  //trim(key%name)//" "//trim(key%choices)//" "//key%models)
+                  about(key))//meanings(key), trim(key%group)//" "//trim(key%name)//" " &
+                  //trim(key%group)//"."//trim(key%name)//" "//trim(key%choices)//" "//key%models)
             end associate
          end do
       end do
@@ -200,6 +201,10 @@ contains
       end do
       heading = "Columns of STEM.csv, the time history:"
       call show_columns("", history_quantities)
+      heading = "In this program:"
+      do i = 1, size(topics)
+         call show("", item("   "//word_of(topics(i)%words), topics(i)%meaning), topics(i)%words)
+      end do
       heading = "On the screen of a run:"
       do i = 1, size(screen_words)
          call show("", item("", screen_meanings(i)), screen_words(i))
@@ -261,6 +266,32 @@ contains
       if (key%models /= "") words = words//"; "//trim(key%models)
    end function about
 
+   !> The words that a key can have, a line each
+   function meanings(key) result(text)
+      type(key_t), intent(in) :: key
+      !> Lines; empty where the words explain themselves
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = ""
+      do i = 1, size(choices)
+         if (choices(i)%key == trim(key%group)//"."//key%name .and. contains_word(key%choices, &
+            choices(i)%word)) text = text//item("", trim(choices(i)%word)//": " &
+            //choices(i)%meaning)
+      end do
+   end function meanings
+
+   !> First of the words of a topic
+   pure function word_of(words) result(word)
+      !> Words between blanks
+      character(len=*), intent(in) :: words
+      character(len=:), allocatable :: word
+
+      word = adjustl(words)
+      word = word(:index(word//" ", " ") - 1)
+   end function word_of
+
    !> All words of input and output except GROUP.KEY, each after a blank
    function all_words() result(words)
       character(len=:), allocatable :: words
@@ -276,6 +307,9 @@ contains
       end do
       do i = 1, size(statuses)
          words = words//" "//trim(statuses(i)%name)
+      end do
+      do i = 1, size(topics)
+         words = words//" "//trim(adjustl(topics(i)%words))
       end do
    end function all_words
 
@@ -431,7 +465,8 @@ contains
             text = member("name", key%name)//member("type", type_name(key%value_kind)) &
                //member("value", kind_name(key%value_kind))//member("meaning", key%meaning) &
                //member("unit", key%unit)//member("range", interval_text(key%range)) &
-               //words("choices", key%choices)//words("models", key%models) &
+               //words("choices", key%choices)//array(meanings_of(key), "meanings") &
+               //words("models", key%models) &
                //member("required", key%required)
             if (key%default == "''") then
                text = text//member("default", "")
@@ -443,6 +478,21 @@ contains
          end associate
       end do
    end function keys_of
+
+   !> The words that a key can have, as JSON objects
+   function meanings_of(key) result(list)
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: list
+
+      integer :: i
+
+      list = ""
+      do i = 1, size(choices)
+         if (choices(i)%key == trim(key%group)//"."//key%name .and. contains_word(key%choices, &
+            choices(i)%word)) list = list//object(member("word", choices(i)%word) &
+            //member("meaning", choices(i)%meaning))
+      end do
+   end function meanings_of
 
    !> Name of the type of a key
    pure function type_name(value_kind) result(name)

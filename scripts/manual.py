@@ -117,6 +117,7 @@ def key_item(key):
     if default.startswith("`"):
         default = f"default {default}"
     words = "; ".join(filter(None, [meaning + unit + mark + rest, value_of(key), default])) + "."
+    words += "".join(f" `{c['word']}`: {c['meaning']}." for c in key["meanings"])
     if key["models"]:
         words += f" Models: {code(key['models'])}."
     return item(key["name"], words)
@@ -141,6 +142,10 @@ def groups(document, man):
         ]  # fmt: skip
         head = ["key", "meaning", "unit", "value", "default"] + (["models"] if models else [])
         blocks.append(table(head, rows))
+        for key in group["keys"]:
+            if key["meanings"]:
+                blocks.append(f"The values of `{key['name']}`:")
+                blocks.append("\n".join(f"- `{c['word']}`: {escaped(c['meaning'])}" for c in key["meanings"]))
         if models:
             selector = next(key for key in group["keys"] if key["name"] == group["selector"])
             blocks.append(f"The keys of each `{group['selector']}`, besides those of all:")

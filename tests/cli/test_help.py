@@ -1,5 +1,6 @@
 """Help, and the version."""
 
+import json
 import tomllib
 
 import pytest
@@ -128,6 +129,25 @@ def test_words_of_the_output(vcor, word):
     assert word in names
     if word != "status":
         assert names == [word]
+
+
+@pytest.mark.parametrize(
+    "word, says",
+    [("hertz", "contact.law"), ("layer", "plate.base"), ("pad", "plate.base"), ("ting", "receding"), ("zener", "'constant'")],
+)
+def test_words_of_the_field(vcor, word, says):
+    """Terms that are no word of the input lead to the keys that have to do with them."""
+    assert says in " ".join(vcor.succeeds("help", word).split())
+
+
+def test_values_have_meanings(vcor):
+    """Every word that a key can have is explained, but units, and spacings."""
+    plain = {"time_unit", "modulus_unit", "spacing"}
+    for group in json.loads(vcor.succeeds("help", "--json"))["groups"]:
+        for key in group["keys"]:
+            if key["name"] not in plain:
+                assert [c["word"] for c in key["meanings"]] == key["choices"], key["name"]
+                assert all(c["meaning"] for c in key["meanings"])
 
 
 def test_misspelt_word_of_the_output(vcor):

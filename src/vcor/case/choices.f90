@@ -1,0 +1,110 @@
+!> Meanings of the words that a key can have, and the words of the field that lead to them: what
+!> `vcor help` and the reference of the input say beside the catalogue
+module vcor_case_choices
+   implicit none
+   private
+
+   public :: choice_t, choices, topic_t, topics
+
+   !> One word that a key can have
+   type :: choice_t
+      !> Key, `group.key`
+      character(len=24) :: key
+      !> The word
+      character(len=16) :: word
+      !> Meaning, one line
+      character(len=112) :: meaning
+   end type choice_t
+
+   !> A term of the field that is no word of input or output
+   type :: topic_t
+      !> Its names, lower case, between blanks
+      character(len=64) :: words
+      !> What it means here, and which keys have to do with it
+      character(len=400) :: meaning
+   end type topic_t
+
+   !> The words, in the order of the catalogue; those of units, of spacing and of yes and no explain
+   !> themselves
+   type(choice_t), parameter :: choices(*) = [ &
+      choice_t('sphere.shape', 'sphere', 'a paraboloid of this radius, as Hertz has it'), &
+      choice_t('sphere.shape', 'true_sphere', &
+         'the sphere itself, for contacts that are not small'), &
+      choice_t('sphere.shape', 'cone', 'a cone of this half_angle'), &
+      choice_t('sphere.shape', 'punch', 'a flat cylinder of this punch_radius'), &
+      choice_t('sphere.shape', 'power', 'a body of revolution z = C r^p'), &
+      choice_t('plate.waves', 'none', &
+         'the plate only dents: a half space, a second sphere, a layer'), &
+      choice_t('plate.waves', 'constant', &
+         'thin plate, alpha(0) times the impulse: exact if elastic (Zener 1941)'), &
+      choice_t('plate.waves', 'relaxing', "thin plate, alpha(t) times the impulse: the paper's"), &
+      choice_t('plate.waves', 'frozen', "thin plate, int alpha F' dt: the paper's Fig. 7"), &
+      choice_t('plate.waves', 'hereditary', &
+         'thin plate by the correspondence principle: exact if thin and wide'), &
+      choice_t('plate.waves', 'body', &
+         'waves and contact by full elastodynamics, any thickness: exact if wide'), &
+      choice_t('plate.base', 'free', 'nothing is behind the plate'), &
+      choice_t('plate.base', 'bonded', 'a layer glued to a rigid floor'), &
+      choice_t('plate.base', 'sliding', 'a layer that lies on a rigid floor without friction'), &
+      choice_t('contact.mechanics', 'paper', "the paper's choices: boltzmann, eq1, relaxing"), &
+      choice_t('contact.mechanics', 'exact', 'the exact choices: receding, series, body'), &
+      choice_t('contact.law', 'boltzmann', &
+         'hereditary integral over all the past: exact while the contact grows'), &
+      choice_t('contact.law', 'receding', "Ting's rule: exact while the contact shrinks, too"), &
+      choice_t('contact.pair', 'eq1', "moduli of the same time combine, the paper's Eq. (1)"), &
+      choice_t('contact.pair', 'series', 'compliances add, the two bodies in series: exact'), &
+      choice_t('material.model', 'rigid', 'does not deform'), &
+      choice_t('material.model', 'elastic', 'one modulus'), &
+      choice_t('material.model', 'sls', 'standard linear solid: E_g (a/b + (1 - a/b) exp(-b t))'), &
+      choice_t('material.model', 'prony', &
+         'sum of exponentials E_0 + sum E_i exp(-t/tau_i), and a dashpot'), &
+      choice_t('material.model', 'power_law', 'E_0 + C t^-a/Gamma(1 - a)'), &
+      choice_t('material.model', 'cerf', 'E_0 + E_1 exp(b^2 t) erfc(b sqrt(t))'), &
+      choice_t('material.model', 'mittag_leffler', &
+         'fractional Zener model, E_0 + E_1 E_a(-(t/tau)^a)'), &
+      choice_t('material.model', 'table', 'relaxation modulus from a file'), &
+      choice_t('material.modulus_kind', 'tensile', "the moduli are Young's moduli E"), &
+      choice_t('material.modulus_kind', 'shear', &
+         'the moduli are shear moduli G; E = 2 (1 + nu) G'), &
+      choice_t('material.shift', 'wlf', &
+         'Williams, Landel and Ferry: -C1 (T - T_ref)/(C2 + T - T_ref)'), &
+      choice_t('material.shift', 'arrhenius', &
+         'activation energy: ln a_T = (E_a/R)(1/T - 1/T_ref)'), &
+      choice_t('material.shift', 'table', 'log10 a_T over T from shift_file'), &
+      choice_t('solver.method', 'auto', 'the method that suits the impact'), &
+      choice_t('solver.method', 'ive', &
+         'internal variables of a sum of exponentials, by collocation'), &
+      choice_t('solver.method', 'direct', 'time steps of the integral equation'), &
+      choice_t('solver.method', 'coupled', "contact and waves together, of waves = 'body'"), &
+      choice_t('solver.scheme', 'product', 'product integration: second order, always stable'), &
+      choice_t('solver.scheme', 'adams_bashforth', "the paper's explicit scheme"), &
+      choice_t('solver.form', 'a', 'by parts: the rate of u'), &
+      choice_t('solver.form', 'b', 'by parts: the rate of the kernel, which must be finite at 0'), &
+      choice_t('solver.quadrature', 'rectangle', "the paper's digits"), &
+      choice_t('solver.quadrature', 'trapezoid', 'one order more')]
+
+   !> The topics
+   type(topic_t), parameter :: topics(*) = [ &
+      topic_t(' hertz dent indentation ', &
+         "Hertz's contact of curved surfaces, F = (4/3) sqrt(R) E' s^1.5. Here E' is the " &
+         //'relaxation modulus of both bodies, and F an integral over the past: see ' &
+         //'contact.law. sphere.shape has other bodies, plate.base layers, and the column ' &
+         //'contact_ratio says how far the contact is from small.'), &
+      topic_t(' layer pad mat coating sheet film ', &
+         "A layer on a rigid floor: plate.base = 'bonded' or 'sliding' with thickness. A " &
+         //"plate with nothing behind it bends: plate.waves = 'body'. Columns layer_ratio, " &
+         //'layer_stiffening.'), &
+      topic_t(' ting ', &
+         "Contact that recedes: contact.law = 'receding'. T. C. T. Ting, J. Appl. Mech. " &
+         //'33 (1966) 845.'), &
+      topic_t(' zener ', &
+         "Waves in a thin elastic plate: plate.waves = 'constant'; column inelasticity " &
+         //'(lambda).'), &
+      topic_t(' temperature dma master wlf tts ', &
+         'impact.temperature shifts the times of a material with a shift; vcor master ' &
+         //'and vcor fit make one from DMA data at several temperatures.'), &
+      topic_t(' friction adhesion plasticity spin ', &
+         'Not computed: the contact is frictionless, linear and without adhesion. The ' &
+         //'columns mean_pressure and validity say where this matters.')]
+
+end module vcor_case_choices
