@@ -100,7 +100,7 @@ module vcor_case_choices
       topic_t(' zener ', &
          "Waves in a thin elastic plate: plate.waves = 'constant'; column inelasticity " &
          //'(lambda).'), &
-      topic_t(' temperature dma master wlf tts ', &
+      topic_t(' dma tts ', &
          'impact.temperature shifts the times of a material with a shift; vcor master ' &
          //'and vcor fit make one from DMA data at several temperatures.'), &
       topic_t(' friction adhesion plasticity spin ', &
