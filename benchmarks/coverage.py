@@ -23,7 +23,7 @@ import test_identify as cases  # noqa: E402
 
 import vcor  # noqa: E402
 from vcor.materials import identification as inner  # noqa: E402
-from vcor.materials.data import Data  # noqa: E402
+from vcor.materials.data import read_data  # noqa: E402
 
 
 def by_interval(case, data, errors, truth):
@@ -54,7 +54,8 @@ def by_rise(case, data, errors, truth):
 
 def coverage(model, draws, noise, holds):
     """Draws whose intervals hold each parameter, and how many were refused."""
-    clean = Data(TESTS / "data" / f"impacts_of_{model}.csv").columns
+    table = read_data(TESTS / "data" / f"impacts_of_{model}.csv")
+    clean = {key: one.to_numpy() for key, one in table.items()}
     truth = {f"rubber.{key}": value for key, value in cases.TRUTH[model].items()}
     errors = {"cor": noise, "contact_time": noise}
     held, refused = np.zeros(len(truth), int), 0

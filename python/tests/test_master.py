@@ -215,7 +215,7 @@ def test_shear_moduli_become_tensile_ones(tmp_path):
     shear = table(f"T [C],{HEAD}", [0, 10, 20],
                   lambda at, t: np.array(moduli(at, t + 273.15, True)) / 2.8)  # fmt: skip
     path.write_text(shear.replace("E_", "G_"))
-    with pytest.raises(vcor.UsageError, match="give --poisson-ratio"):
+    with pytest.raises(vcor.UsageError, match="expected --poisson-ratio"):
         vcor.master(path)
     found = vcor.master(path, poisson_ratio=0.4)
     assert np.allclose(found.curve(), tensile.curve(), rtol=1e-6)
@@ -226,14 +226,14 @@ def test_shear_moduli_become_tensile_ones(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (table(f"T [F],{HEAD}", [0, 10]), "found 'F' as unit of the temperatures"),
-        (table(f"T,{HEAD}", [0, 10]), "expected T [C] or T [K]"),
+        (table(f"T [R],{HEAD}", [0, 10]), "found 'R' as unit of 'T [R]', expected C or K"),
+        (table(f"T,{HEAD}", [0, 10]), "expected T [C] for degrees Celsius"),
         (table(f"T [K],{HEAD}", [0, 10]), "above 0 K"),
         (table(f"T [C],{HEAD}", [0, 10, 0, 10]), "two curves at 273.15 K"),
         (table(f"T [C],{HEAD}", [-40, 90]), "the storage moduli at 233.15 and 363.15 K have none"),
         ("f,E_stor,E_loss\n1,2,3\n2,3,4\n", "no column of temperatures"),
         ("f,E_stor,E_loss,T\nHz,MPa,MPa,C\n1,2,3,20\n2,3,4,20\n3,4,5,20\n", "two or more"),
-        ("f,E_stor,E_loss,T\nHz,MPa,MPa,F\n1,2,3,20\n2,3,4,20\n", "unit of the temperatures"),
+        ("f,E_stor,E_loss,T\nHz,MPa,MPa,R\n1,2,3,20\n2,3,4,20\n", "found 'R' as unit of 'T'"),
     ],
 )
 def test_bad_files_are_refused_in_one_line(tmp_path, text, said):

@@ -19,8 +19,8 @@ from conftest import PAPER, ROOT, SWEEPS
 
 import vcor
 from vcor import _command
-from vcor.materials.data import Data
-from vcor.plot import KINDS, STYLE, _label_decades, figure, main, save
+from vcor.materials.data import read_data
+from vcor.plot import KINDS, STYLE, _find, _label_decades, figure, main, save
 
 
 @pytest.fixture(scope="module")
@@ -199,22 +199,22 @@ def test_measured_points(results, tmp_path):
     (segments,) = (c.get_segments() for c in bars[0].lines[2])
     np.testing.assert_allclose([s[:, 1] for s in segments], [[0.41, 0.43], [0.41, 0.45]])
     np.testing.assert_allclose(bars[1].lines[0].get_ydata(), [1.5, np.nan])
-    (tmp_path / "moduli.csv").write_text("omega [kHz],storage_modulus [MPa]\n1,5\n2,6\n")
+    (tmp_path / "moduli.csv").write_text("f [kHz],storage_modulus [MPa]\n1,5\n2,6\n")
     made = figure([results / "sls_material.h5", tmp_path / "moduli.csv"])
     (bar,) = made.axes[1].containers
     np.testing.assert_allclose(bar.lines[0].get_xdata(), 2e3 * np.pi * np.array([1, 2]))
     np.testing.assert_allclose(bar.lines[0].get_ydata(), [5, 6])
-    (tmp_path / "force.csv").write_text("time [ms],force\n0.5,500\n")
+    (tmp_path / "force.csv").write_text("time [ms],force [N]\n0.5,500\n")
     made = figure([results / "sls_ghost.h5", tmp_path / "force.csv"])
     (bar,) = made.axes[0].containers
     assert bar.lines[0].get_ydata()[0] == pytest.approx(
         500 / float(vcor.open(results / "sls_ghost.h5").max_force)
     )
-    (tmp_path / "other.csv").write_text("speed,rebound\n1,2\n")
-    with pytest.raises(vcor.InputError, match="speed, rebound"):
+    (tmp_path / "other.csv").write_text("speed,max_force\n1,2\n")
+    with pytest.raises(vcor.InputError, match="velocity, max_force"):
         figure([results / "sweep.h5", tmp_path / "other.csv"])
-    (tmp_path / "unit.csv").write_text("velocity [kn],cor\n1,2\n")
-    with pytest.raises(vcor.InputError, match="unknown unit 'kn'"):
+    (tmp_path / "unit.csv").write_text("velocity [knots],cor\n1,2\n")
+    with pytest.raises(vcor.InputError, match="found 'knots' as unit"):
         figure([results / "sweep.h5", tmp_path / "unit.csv"])
 
 
@@ -269,9 +269,9 @@ def test_moduli_of_a_fit(tmp_path):
 )
 def test_ways_to_write_data(tmp_path, text):
     (tmp_path / "drops.csv").write_text(text, encoding="utf-8-sig")
-    data = Data(tmp_path / "drops.csv")
-    np.testing.assert_allclose(data.find("impact.velocity")[0], [5, 10])
-    np.testing.assert_allclose(data.find("cor")[0], [0.42, 0.43])
+    data = read_data(tmp_path / "drops.csv")
+    np.testing.assert_allclose(_find(data, "impact.velocity")[0], [5, 10])
+    np.testing.assert_allclose(_find(data, "cor")[0], [0.42, 0.43])
 
 
 def test_levels_of_a_map(results):
@@ -535,8 +535,8 @@ def bad(results):
         (["sls_material.h5", "--legend", "a"], 2, "found --legend"),
         (["bare.h5"], 3, r"output\.history = \.true\."),
         (["sls_ghost.h5"] * 9, 2, "at most 8"),
-        (["few.csv"], 3, "at least one row"),
-        (["sweep.h5", "words.csv"], 3, "'cor' holds more than numbers"),
+        (["few.csv"], 3, "found no numbers"),
+        (["sweep.h5", "words.csv"], 3, "in column 'cor', expected a number"),
         (["no_range.nml"], 3, "valid_from"),
         (["sweep.h5", "--legend", "a", "--legend", "b"], 2, "found 2 --legend for 1"),
         (["sweep.h5", "--legend", "a\tb"], 2, "control character"),

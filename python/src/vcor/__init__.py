@@ -22,6 +22,7 @@ from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
 if TYPE_CHECKING:
     from .exchange.cards import card, read_card
     from .exchange.codes import export, pair
+    from .materials.data import read_data
     from .materials.identification import identify
     from .materials.master import master
     from .uncertainty import propagate, sensitivities
@@ -47,6 +48,7 @@ __all__ = [
     "propagate",
     "read",
     "read_card",
+    "read_data",
     "sensitivities",
 ]
 
@@ -63,6 +65,7 @@ _LATER = {
     "pair": "exchange.codes",
     "propagate": "uncertainty",
     "read_card": "exchange.cards",
+    "read_data": "materials.data",
     "sensitivities": "uncertainty",
 }
 

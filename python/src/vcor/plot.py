@@ -22,6 +22,7 @@ from typing import Any
 import matplotlib as mpl
 import matplotlib.style
 import numpy as np
+import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
@@ -34,7 +35,8 @@ from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, whole
 from ._text import printable
 from .case import listed
-from .materials.data import NAMES, PREFIXES, Data
+from .materials.data import is_temperature, plain_name, read_data
+from .materials.units import PREFIXES, ZERO_C
 from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
@@ -73,7 +75,7 @@ class _Wishes:
     results: list[Result]
     #: Whether the user gave the texts of the results
     given: bool
-    data: list[Data]
+    data: list[pd.DataFrame]
     quantities: Sequence[str]
     log: str | None
     ranges: dict[str, _Range]
@@ -127,7 +129,11 @@ def figure(
     # a Dataset and a name are iterable, too
     files = [files] if isinstance(files, (xr.Dataset, str)) else listed(files)
     results = [Result(source) for source in files if is_result(source)]
-    data = [Data(name) for name in files if not (isinstance(name, xr.Dataset) or is_result(name))]
+    data = [
+        read_data(name, whole=False)
+        for name in files
+        if not (isinstance(name, xr.Dataset) or is_result(name))
+    ]
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
     if len(results) > MOST:
@@ -155,7 +161,7 @@ def figure(
             )
     for result, text in zip(results, legends or legends_of(results), strict=True):
         result.text = printable(str(text))
-    names = [NAMES.get(name, name) for name in listed(quantities or "cor")]
+    names = [plain_name(name) for name in listed(quantities or "cor")]
     wishes = _Wishes(results, bool(legends), data, names, log, ranges or {}, levels, hatch, width)
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
@@ -166,7 +172,7 @@ def figure(
     for one in data:
         if _stem(one) not in shown:
             raise InputError(
-                f"{one.path}: found the columns {', '.join(one.columns)}, expected one for each "
+                f"{one.attrs['path']}: found the columns {', '.join(one)}, expected one for each "
                 f"axis{': ' * bool(results[0].axes)}{', '.join(results[0].axes)}"
             )
     return made
@@ -482,7 +488,7 @@ def _map(wishes: _Wishes) -> Figure:
                 axis.contour(fx * x, fy * y, found, levels=[0.5], colors="0.25", linestyles=":")
             axis.fill([], [], fill=False, hatch=lines, ec="0.25", lw=0, label=text)
         for one in wishes.data:
-            (px, _), (py, _), (pz, _) = (one.find(n) for n in (*result.axes, name))
+            (px, _), (py, _), (pz, _) = (_find(one, n) for n in (*result.axes, name))
             if px is None or py is None:
                 continue
             options = {"color": "white"} if pz is None else {
@@ -578,10 +584,10 @@ def _curve(axis: Axes, number: int, x: Any, y: Any, text: str | None, **options:
     axis.plot(x, y, **settings)
 
 
-def _points(axis: Axes, data: list[Data], x: str, y: str, fx: float, fy: float) -> None:
+def _points(axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy: float) -> None:
     """Measured points with their errors."""
     for number, one in enumerate(data):
-        (at, at_sigma), (values, sigma) = one.find(x), one.find(y)
+        (at, at_sigma), (values, sigma) = _find(one, x), _find(one, y)
         if at is None or values is None:
             continue
         axis.errorbar(
@@ -592,9 +598,19 @@ def _points(axis: Axes, data: list[Data], x: str, y: str, fx: float, fy: float) 
         )  # fmt: skip
 
 
-def _stem(data: Data) -> str:
+def _find(data: pd.DataFrame, name: str) -> tuple[Floats | None, Floats | None]:
+    """Values, temperatures in C, and standard errors of a quantity or an address, else None."""
+    zero = ZERO_C if is_temperature(name) else 0.0
+    for key in (name, name.rpartition(".")[2]):
+        if key in data:
+            sigma = f"{key}_sigma"
+            return data[key].to_numpy() - zero, data[sigma].to_numpy() if sigma in data else None
+    return None, None
+
+
+def _stem(data: pd.DataFrame) -> str:
     """Measured data in the legend."""
-    return printable(Path(data.path).stem.replace("_", " "))
+    return printable(Path(data.attrs["path"]).stem.replace("_", " "))
 
 
 def _scale(unit: str, *values: Any) -> tuple[float, str]:

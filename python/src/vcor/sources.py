@@ -15,7 +15,8 @@ import xarray as xr
 from ._library import Error, InputError, UsageError
 from ._text import near, printable, read_text
 from .case import Case, number
-from .materials.data import ZERO_C, is_temperature
+from .materials.data import is_temperature
+from .materials.units import ZERO_C
 from .results import open as open_results
 
 Source = str | os.PathLike[str] | xr.Dataset

@@ -1,163 +1,189 @@
-"""Measured data: columns of numbers in SI units, by the names of their header."""
+"""Measured data: files of any laboratory in SI units, strictly by the names of columns."""
 
 from __future__ import annotations
 
-import csv
+import argparse
 import math
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._library import Floats, InputError
-from .._text import read_text
+from .._library import InputError, UsageError
+from .grid import read_grid
+from .names import read_head
+from .reader import ALIKE, Reader
+from .tables import Choice
+from .units import ZERO_C
 
-PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-#: Units that take a prefix
-SCALED = ("m", "s", "m/s", "N", "Pa", "J", "W", "Hz", "rad/s", "g")
-#: Units that are not those of the columns of vcor: how much of which
-_OTHERS = {
-    "Hz": (2 * math.pi, "rad/s"), "g": (1e-3, "kg"), "%": (0.01, "1"), "-": (1.0, "1"),
-    "min": (60.0, "s"), "h": (3600.0, "s"), "N/m2": (1.0, "Pa"), "N/mm2": (1e6, "Pa"),
-    "cm": (0.01, "m"), "cm/s": (0.01, "m/s"),
-}  # fmt: skip
-#: 0 C [K]
-ZERO_C = 273.15
-#: Temperature below which one without a unit is none in kelvin
-_COLDEST = 150.0
-_PLAIN = ("", "1", "1/s", "kg", "kg/m3", "K", "N s")
-#: Names that others give to columns, and what these are
-NAMES = {
-    "T": "temperature", "t": "time", "omega": "frequency", "w": "frequency",
-    "angular_frequency": "frequency",
-    "f": "frequency", "freq": "frequency", "e": "cor",
-    "e_a": "cor_sphere", "t0": "contact_time", "s_max": "max_indentation", "F_max": "max_force",
-    "E": "relaxation_modulus",
-    "E(t)": "relaxation_modulus", "modulus": "relaxation_modulus", "E_relax": "relaxation_modulus",
-    "E'": "storage_modulus", "E_stor": "storage_modulus", "storage": "storage_modulus",
-    "E''": "loss_modulus", "E_loss": "loss_modulus", "loss": "loss_modulus",
-    "tan_delta": "loss_tangent", "tan(d)": "loss_tangent", "loss_factor": "loss_tangent",
-    "temp": "temperature", "v": "velocity", "impact_velocity": "velocity",
-    "fall_height": "drop_height", "coefficient_of_restitution": "cor",
-}  # fmt: skip
-#: Columns of a laboratory's table that are no data
-_ASIDE = ("nr", "no", "number", "run", "test", "sample", "specimen", "id", "date", "remark",
-          "comment", "note", "operator")  # fmt: skip
-#: Columns of a file of moduli without a header
-_UNNAMED = {2: ["time", "relaxation_modulus"], 3: ["frequency", "storage_modulus", "loss_modulus"]}
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Which columns are what, and their units, as a user states them
+Columns = Mapping[str, str | int] | Sequence[str] | None
+Units = Mapping[str, str] | Sequence[str] | str | None
+
+#: Difference of temperatures that begins another curve [K]
+SAME_TEMPERATURE = 1.0
 
 
-class Data:
-    """A file of measured points.
-
-    Columns are separated by commas, semicolons, tabs or blanks. The header, which other lines may
-    precede, names them, with units in brackets or in a second line where they are not SI; `#`
-    begins a remark.
+def read_data(
+    path: str | os.PathLike[str],
+    columns: Columns = None,
+    units: Units = None,
+    *,
+    unit_of: Callable[[str], str] | None = None,
+    whole: bool = True,
+) -> pd.DataFrame:
+    """Measured data of a file, in SI units and by the names of vcor.
 
     Parameters
     ----------
     path
-        The file.
+        The file: text in any encoding, or a spreadsheet (.xlsx); `-` is the standard input.
+    columns
+        Which column is what, where the names in the file do not say so: texts of heads or numbers
+        of columns by name; or the names of all columns of a file without a head, in their order.
+    units
+        Units of columns that have none in the file: each for the columns of its quantity, or by
+        the names of columns.
     unit_of
-        SI unit that a column of some name has; empty: any.
+        SI unit of the value at an address, for columns with names such as `rubber.beta`.
+    whole
+        Whether what belongs together must be there, as the loss modulus beside the storage modulus.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each point, with its line in the file as index. `attrs` has `kind` (dynamic,
+        relaxation, shift, record or impacts), `taken`, a line that says what was taken for what,
+        `shear`, whether moduli are shear moduli (None: not stated), `units`, `names`, `remarks`
+        and `path`.
     """
+    import pandas as pd
 
-    def __init__(
-        self, path: str | os.PathLike[str], unit_of: Callable[[str], str] = lambda _: ""
-    ) -> None:
-        self.path = os.fspath(path)
-        try:
-            text = read_text(path, "strict")
-        except UnicodeDecodeError:
-            raise InputError(f"{self.path}: this is no text") from None
-        lines = [line for line in text.splitlines() if line.split("#")[0].strip(" ;,\t")]
-        lines = [line for line in lines if not line.lower().startswith("sep=")]
-        marks = [mark for mark in ";\t" if any(mark in line for line in lines)]
-        mark = marks[0] if marks else "," if lines and "," in lines[0] else " "
-        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
-        if mark == " ":
-            rows = [re.findall(r"[^\s\[]+(?:\s*\[[^\]]*\])?", line) for line in lines]
-        if rows and all(map(_is_number, rows[0])) and len(rows[0]) in _UNNAMED:
-            rows.insert(0, _UNNAMED[len(rows[0])])
-        # a row of numbers may begin with a word, a line of the instrument may hold one number
-        first = next((i for i, row in enumerate(rows) if i and (
-            sum(map(_is_number, row)) > 1 or _is_number(row[0]))), 0)  # fmt: skip
-        if not first:
-            raise InputError(f"{self.path}: expected a header and at least one row of numbers")
-        second = first == 2 and len(rows[0]) >= len(rows[1])
-        units = rows[first - 1] if second or all(map(_is_unit, rows[first - 1])) else None
-        heads, rows = rows[first - 1 - (units is not None)], rows[first:]
-        #: Columns in SI units, by name
-        self.columns: dict[str, Floats] = {}
-        for i, head in enumerate(heads):
-            found = re.fullmatch(r"(.+?)\s*(?:\[(.*)\]|\s\((.*)\))?", head)
-            if not found:
-                raise InputError(f"{self.path}: found '{head}' as name of a column")
-            name, unit = plain_name(found[1]), found[2] or found[3]
-            if name in _ASIDE:
-                continue
-            if name in self.columns:
-                raise InputError(f"{self.path}: found two columns '{name}', expected one")
-            if units and i < len(units):
-                unit = units[i].strip("[]()")
-            if unit is None and found[1] in ("f", "freq"):
-                unit = "Hz"
-            values: list[float] = []
-            try:
-                for row in rows:
-                    cell = row[i] if mark == "," else row[i].replace(",", ".")
-                    values.append(float(cell) if cell else math.nan)
-            except (ValueError, IndexError):
-                cell = f"'{row[i]}'" if i < len(row) else "no cell"
-                raise InputError(f"{self.path}: column '{name}' holds more than numbers: found "
-                                 f"{cell} in row {rows.index(row) + 1}") from None  # fmt: skip
-            expected = unit_of(name.removesuffix("_sigma"))
-            zero = ZERO_C if _is_celsius(unit or "") else 0.0
-            size, si = (1.0, "K") if zero else _size(unit or "", expected)
-            known = not math.isnan(size)
-            if not known or (unit and expected not in ("", si)):
-                what = f"found '{unit}' as unit" if known else f"unknown unit '{unit}'"
-                ours = {"": "such as cm, ms, MPa, rad/s", "K": "K or C"}.get(
-                    expected, f"{expected} or a multiple of it"
-                )
-                raise InputError(f"{self.path}: column '{name}': {what}, expected {ours}")
-            shift = 0.0 if name.endswith("_sigma") else zero
-            self.columns[name] = np.array(values) * size + shift
-            warmest = np.nan_to_num(values).max(initial=0.0)
-            if expected == "K" and not unit and is_temperature(name) and warmest < _COLDEST:
-                raise InputError(f"{self.path}: column '{name}': found at most {warmest:g} K, "
-                                 f"expected {name} [C] for degrees Celsius, or [K]")  # fmt: skip
-
-    def find(self, name: str) -> tuple[Floats | None, Floats | None]:
-        """Values, temperatures in C, and standard errors of a quantity or an address, else None."""
-        zero = ZERO_C if is_temperature(name) else 0.0
-        for key in (name, name.rpartition(".")[2]):
-            if key in self.columns:
-                return self.columns[key] - zero, self.columns.get(f"{key}_sigma")
-        return None, None
+    choice = Choice(columns, units)
+    grid = read_grid(path)
+    reader = Reader(grid, choice, unit_of, whole)
+    parts, kind = reader.parts()
+    frame = pd.concat(parts)
+    frame.index.name = "line"
+    if frame["set"].nunique() < 2:
+        frame = frame.drop(columns="set")
+    names = {key: text for key, text in reader.names.items() if key in frame}
+    frame.attrs = {
+        "path": grid.path,
+        "kind": kind,
+        "shear": reader.shear(),
+        "names": names,
+        "units": {key: reader.units.get(key, "") for key in frame},
+        "remarks": grid.remarks,
+    }
+    frame.attrs["taken"] = reader.taken(frame)
+    return frame
 
 
-def _size(unit: str, own: str = "1") -> tuple[float, str]:
-    """A unit as so much, nan if it is none, of which SI unit, its own one among them."""
-    unit = unit.replace("μ", "µ").replace("us", "µs").replace("^", "")
-    if unit in (own, *_PLAIN):
-        return 1.0, unit
-    for power, prefix in PREFIXES.items():
-        base = unit.removeprefix(prefix)
-        if unit.startswith(prefix) and base in SCALED:
-            size, si = _OTHERS.get(base, (1.0, base))
-            return 10.0**power * size, si
-    return _OTHERS.get(unit, (math.nan, ""))
+def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
+    """Moduli at one temperature each, by rising frequency or time.
+
+    `attrs["temperature"]` is the mean temperature [K], nan where the file has none.
+    """
+    across = "frequency" if data.attrs["kind"] == "dynamic" else "time"
+    kelvin = data["temperature"].to_numpy() if "temperature" in data else np.full(len(data), np.nan)
+    group = data["set"].to_numpy() if "set" in data else np.zeros(len(data))
+    jumps = (np.diff(group) != 0) | (np.abs(np.diff(kelvin)) > SAME_TEMPERATURE)
+    found = []
+    for part in np.split(np.arange(len(data)), np.flatnonzero(jumps) + 1):
+        one = data.iloc[part]
+        steps = np.diff(one[across])
+        if not ((steps > 0).all() or (steps < 0).all()):
+            rises = steps[steps != 0].size and steps[steps != 0][0] > 0
+            at = int(np.argmax(steps <= 0 if rises else steps >= 0)) + 1
+            raise InputError(
+                f"{data.attrs['path']}:{one.index[at]}: found a {across} of "
+                f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
+                f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
+                "or a column of temperatures or sets that tells curves apart"
+            )
+        one = one.sort_values(across)
+        temperature = one["temperature"].mean() if "temperature" in one else math.nan
+        one.attrs = {**data.attrs, "temperature": float(temperature)}
+        found.append(one)
+    return found
 
 
-def _is_celsius(unit: str) -> bool:
-    return unit.strip("° ") in ("C", "degC")
+def read_moduli(
+    name: str | os.PathLike[str],
+    columns: Columns = None,
+    units: Units = None,
+    *,
+    poisson_ratio: float | None = None,
+    shear: bool = False,
+) -> list[pd.DataFrame]:
+    """Tensile moduli of a file at one temperature each; `FILE@-20C` states that of the file.
+
+    Shear moduli, by their names or by `shear`, become tensile ones by Poisson's ratio.
+    """
+    path, given = _at(os.fspath(name))
+    data = read_data(path, columns, units)
+    if data.attrs["kind"] not in ("dynamic", "relaxation"):
+        raise InputError(
+            f"{data.attrs['path']}: found {ALIKE[data.attrs['kind']]}, expected moduli "
+            "against time or frequency"
+        )
+    data = tensile(data, poisson_ratio, shear=shear)
+    found = curves(data)
+    if given:
+        if len(found) > 1:
+            raise InputError(f"{path}: found {len(found)} curves, expected one at {given}")
+        found[0].attrs["temperature"] = kelvin(given, path)
+    for one in found:
+        if not math.isnan(at := one.attrs["temperature"]) and at <= 0:
+            raise InputError(
+                f"{path}: found {at:g} K, expected a temperature above 0 K; one in degrees "
+                "Celsius stands under T [C] or ends in C, as -20C"
+            )
+    return found
 
 
-def _is_unit(cell: str) -> bool:
-    unit = cell.strip("[]()")
-    return _is_celsius(unit) or not math.isnan(_size(unit)[0])
+def tensile(
+    data: pd.DataFrame, poisson_ratio: float | None = None, *, shear: bool = False
+) -> pd.DataFrame:
+    """Moduli as tensile ones: shear moduli times 2 (1 + nu)."""
+    if shear and data.attrs["shear"] is False:
+        raise UsageError(f"--shear: found tensile moduli by their names in {data.attrs['path']}")
+    if not (shear or data.attrs["shear"]):
+        return data
+    if poisson_ratio is None or math.isnan(poisson_ratio):
+        raise UsageError(
+            f"{data.attrs['path']}: found shear moduli, expected --poisson-ratio, by which "
+            "they become tensile ones"
+        )
+    found = data.copy()
+    for key in found:
+        if str(key).removesuffix("_sigma").endswith("_modulus"):
+            found[key] *= 2 * (1 + poisson_ratio)
+    found.attrs = {**data.attrs, "shear": False}
+    return found
+
+
+def _at(name: str) -> tuple[str, str]:
+    """File and temperature of FILE@-20C; a file may have such a name itself."""
+    if "@" not in name or Path(name).exists():
+        return name, ""
+    path, _, given = name.rpartition("@")
+    return path, given
+
+
+def kelvin(text: str, what: str) -> float:
+    """A temperature such as -20C, 253K or 253 in kelvin."""
+    found = re.fullmatch(r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", text.strip())
+    if not found:
+        raise UsageError(f"{what}: found '{text}', expected a temperature such as -20C or 253K")
+    return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
 
 
 def is_temperature(name: str) -> bool:
@@ -165,13 +191,49 @@ def is_temperature(name: str) -> bool:
     return "temperature" in name.rpartition(".")[2]
 
 
-def plain_name(head: str) -> str:
-    """Name of a column as vcor has it, whatever blanks and capitals it is written with."""
-    head, ending = re.findall(r"(.+?)([ _](?:sigma|sd|std))?$", head.strip())[0]
-    if head not in NAMES and not re.search(r"\.\w", head):
-        head = re.sub(r"[\s-]+", "_", head.rstrip(".").lower())
-    return NAMES.get(head, head) + ("_sigma" if ending else "")
+def plain_name(text: str) -> str:
+    """Name of a quantity as vcor has it, whatever it is called."""
+    return read_head(text).key or text
 
 
-def _is_number(cell: str) -> bool:
-    return re.fullmatch(r"[-+]?[\d.,]+([eEdD][-+]?\d+)?|nan", cell) is not None
+def add_data_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a command that reads measured data."""
+    parser.add_argument(
+        "--columns",
+        action="append",
+        metavar="NAME=HEAD",
+        default=[],
+        help="which column is what, where its head does not say so: the text of its "
+        "head or its number; NAME,NAME,... for a file without heads",
+    )
+    parser.add_argument(
+        "--units",
+        metavar="UNIT,UNIT",
+        default=None,
+        help="units of columns that have none in the file",
+    )
+
+
+def columns_option(words: Sequence[str]) -> dict[str, str] | list[str] | None:
+    """Values of --columns as `columns` of `read_data`."""
+    if not words:
+        return None
+    if all("=" not in word for word in words):
+        return [name.strip() for name in ",".join(words).split(",")]
+    found: dict[str, str] = {}
+    for word in words:
+        last = ""
+        for piece in word.split(","):
+            key, mark, text = piece.partition("=")
+            # a head may hold a comma
+            if mark and read_head(key).name:
+                last = key.strip()
+                found[last] = text.strip()
+            elif last:
+                found[last] += f",{piece}"
+            else:
+                raise UsageError(
+                    f"--columns: found '{word}', expected NAME=HEAD with a name such as "
+                    "storage_modulus, frequency, temperature or cor"
+                )
+    return found

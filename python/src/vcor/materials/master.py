@@ -10,13 +10,10 @@ thermorheologically simple.
 from __future__ import annotations
 
 import argparse
-import contextlib
 import math
 import os
-import re
 import sys
 from collections.abc import Sequence
-from ctypes import byref, c_int, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,11 +21,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
-from .. import _command, _library, _text
-from .._library import Error, Floats, InputError, NumericalError, UsageError, within
+from .. import _command, _text
+from .._library import Floats, InputError, NumericalError, within
 from ..exchange.card_formats import GAS
-from .data import ZERO_C
-from .fit import NOT_GIVEN, ratio_of
+from .data import kelvin, read_moduli
+from .units import ZERO_C
 
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
@@ -43,12 +40,6 @@ _UNITS = {"wlf_c1": "", "wlf_c2": "K", "activation_energy": "J/mol"}
 FOLLOWS = 2.0
 #: Difference of temperatures of which none is the next of the other [K]
 SAME = 0.1
-#: A column of temperatures with its unit; `T [s]` is a time
-_TEMPERATURE = re.compile(
-    r"(?:(?i:temp(?:erature)?)|T)\.?\s*(?:[/\[(](?!\W*(?:[mnµu]?s|min|h)\b)([^])]*).*)?"
-)
-#: Units of temperatures; the degree sign comes in several encodings
-_UNIT = re.compile(r"(?:\W|Â|deg(?:rees?)?)*(?:([Cc]elsius|C)|[Kk]elvin|K)\b")
 
 
 @dataclass(frozen=True)
@@ -242,8 +233,9 @@ def master(
         flat to tell their shift and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
-    ratio = ratio_of(poisson_ratio)
-    read = (one for name in names for one in read_curves(name, ratio))
+    if poisson_ratio is not None:
+        within(poisson_ratio, "--poisson-ratio", -1, 0.5)
+    read = (one for name in names for one in read_curves(name, poisson_ratio))
     curves = sorted(read, key=lambda one: one.temperature)
     if any(math.isnan(curve.temperature) for curve in curves):
         raise InputError(f"{names[0]}: found no column of temperatures, expected one named T, or "
@@ -301,93 +293,18 @@ def master(
     )
 
 
-def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) -> list[Curve]:
-    """Curves of a file: one per temperature, or per set where it has a column of that name.
-
-    A file without temperatures is one curve at nan. Shear moduli become tensile ones by Poisson's
-    ratio.
-    """
-    path, given = _parts(os.fspath(name))
-    lines = _text.read_text(path).splitlines()
-    if given:
-        return [_curve(path, lines, _kelvin(given, path), poisson_ratio)]
-    told = [line for line in lines[:40] if not line.lstrip().startswith("#")]
-    mark = next((mark for mark in ";\t," if any(mark in line for line in told)), None)
-    rows = [line.split(mark) for line in lines]
-    head = next((i for i, row in enumerate(rows) if len(row) > 2 and any(
-        _TEMPERATURE.fullmatch(cell.strip()) for cell in row)), None)  # fmt: skip
-    if head is None:
-        return [_curve(path, lines, math.nan, poisson_ratio)]
-    cells = [cell.strip() for cell in rows[head]]
-    place = next(i for i, cell in enumerate(cells) if _TEMPERATURE.fullmatch(cell))
-    found = _TEMPERATURE.fullmatch(cells[place])
-    below = dict(enumerate(rows[head + 1])) if head + 1 < len(rows) else {}
-    given = (found[1] if found else None) or below.get(place, "").strip()
-    which = next((i for i, cell in enumerate(cells) if cell.lower() == "set"), place)
-
-    def numbers(column: int) -> Floats:
-        """Numbers of a column, nan in lines without one."""
-        found = np.full(len(rows), np.nan)
-        for i in range(head + 1, len(rows)):
-            with contextlib.suppress(ValueError, IndexError):
-                found[i] = float(rows[i][column].replace(",", "."))
-        return found
-
-    temperature, group = numbers(place), numbers(which)
-    kept = np.flatnonzero(np.isfinite(temperature) & np.isfinite(group))
-    if not kept.size:
-        raise InputError(f"{path}: found no temperatures in column {place + 1}")
-    unit = _UNIT.match(given)
-    if not unit:
-        what = f"'{given}' as" if re.search("[A-Za-z]", given) else "no"
-        raise InputError(f"{path}: found {what} unit of the temperatures, expected T [C] or T [K]")
-    zero = ZERO_C if unit[1] else 0.0
-    times = numbers(0) if cells[0] in ("t", "time") else np.arange(len(rows))
-    # a new curve where the set changes, or the temperature jumps
-    jumps = np.abs(np.diff(group[kept])) > (1.0 if which == place else 0.0)
-    curves = []
-    for part in np.split(kept, np.flatnonzero(jumps) + 1):
-        order = part[np.argsort(times[part], kind="stable")]
-        told = [*lines[: kept[0]], *(lines[i] for i in order)]
-        kelvin = float(np.mean(temperature[part])) + zero
-        curves.append(_curve(path, told, kelvin, poisson_ratio))
-    return curves
-
-
-def _parts(name: str) -> tuple[str, str]:
-    """File and temperature of FILE@-20C; a file may have such a name itself."""
-    if "@" not in name or Path(name).exists():
-        return name, ""
-    path, _, given = name.rpartition("@")
-    return path, given
-
-
-def _curve(path: str, lines: Sequence[str], temperature: float, poisson_ratio: float) -> Curve:
-    """Curve of the lines of a file, read as `vcor fit` reads them."""
-    if temperature <= 0:
-        raise InputError(f"{path}: found {temperature:g} K, expected a temperature above 0 K; one "
-                         "in degrees Celsius stands under T [C] or ends in C, as -20C")  # fmt: skip
-    # a null would end the text: vcor refuses it as any control character
-    text = "\n".join(lines).replace("\0", "\1")
-    n, columns, values = c_int(), c_int(), c_void_p()
-    try:
-        results = map(byref, (n, columns, values))
-        _library.call("vcor_read_moduli", text, os.fsencode(path), poisson_ratio, *results)
-    except Error as error:
-        which = "" if math.isnan(temperature) else f" (at {temperature:.2f} K)"
-        raise type(error)(f"{error}{which}") from None
-    table = _library.take_numbers(values, columns.value * n.value).reshape(columns.value, -1)
-    dynamic = columns.value == 3
-    # frequencies rise; times fall, as their frequencies rise
-    at, *moduli = table if dynamic else table[:, ::-1]
-    return Curve(temperature, dynamic, at, np.array(moduli))
-
-
-def _kelvin(text: str, path: str) -> float:
-    found = re.fullmatch(r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", text.strip())
-    if not found:
-        raise UsageError(f"{path}: found '{text}', expected a temperature such as -20C or 253K")
-    return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
+def read_curves(name: str | os.PathLike[str], poisson_ratio: float | None = None) -> list[Curve]:
+    """Curves of a file, one per temperature; a file without temperatures is one curve at nan."""
+    found = []
+    for data in read_moduli(name, poisson_ratio=poisson_ratio):
+        dynamic = data.attrs["kind"] == "dynamic"
+        # frequencies rise; times fall, as their frequencies rise
+        data = data if dynamic else data[::-1]
+        names = ["storage_modulus", "loss_modulus"] if dynamic else ["relaxation_modulus"]
+        at = data["frequency" if dynamic else "time"].to_numpy()
+        temperature = data.attrs["temperature"]
+        found.append(Curve(temperature, dynamic, at, data[names].to_numpy().T.copy()))
+    return found
 
 
 def _step(cold: Curve, warm: Curve) -> tuple[float, float, str]:
@@ -492,7 +409,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _work(options: argparse.Namespace) -> None:
     given = options.reference
-    reference = _kelvin(given, "--reference") if given is not None else None
+    reference = kelvin(given, "--reference") if given is not None else None
     ratio = options.poisson_ratio
     found = master(options.data, reference_temperature=reference, poisson_ratio=ratio)
     dynamic = found.curves[0].dynamic

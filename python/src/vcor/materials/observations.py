@@ -5,21 +5,19 @@ from __future__ import annotations
 import contextlib
 import math
 import os
-import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
-from .._text import near, read_text
+from .._text import near
 from ..case import Case, arrays, number
-from .data import Data, plain_name
-from .fit import NOT_GIVEN
-from .master import read_curves
+from .data import Columns, Units, curves, read_data, tensile
 
 Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
 
@@ -32,11 +30,6 @@ SETTINGS = {
     "radius": "sphere.radius",
     "mass": "sphere.mass",
 }
-#: Units of columns of a data file that are neither settings nor results [SI]
-UNITS = {
-    "drop_height": "m", "bounce_time": "s", "frequency": "rad/s", "relaxation_modulus": "Pa",
-    "storage_modulus": "Pa", "loss_modulus": "Pa",
-}  # fmt: skip
 #: Quantities that are at most 1, and say nothing about the scale of times
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Difference of temperatures that is none [K]
@@ -305,7 +298,7 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
             raise InputError("found columns of different lengths")
     else:
         name = os.fspath(source)
-        columns = read_columns(source, case, materials)
+        columns, _ = read_columns(source, case, materials)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
@@ -323,35 +316,31 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
 
 
 def read_columns(
-    path: str | os.PathLike[str], case: Case, materials: Sequence[str] = ()
-) -> dict[str, Floats]:
-    """Columns of impacts or of a record; moduli of the first material as `vcor master` has them."""
+    path: str | os.PathLike[str],
+    case: Case,
+    materials: Sequence[str] = (),
+    columns: Columns = None,
+    units: Units = None,
+) -> tuple[dict[str, Floats], str]:
+    """Columns of a file, and what was taken; moduli by the ratio of the first material."""
 
-    def unit_of(name: str) -> str:
-        """SI unit of a column, empty where the column is not known."""
-        known = {**_library.columns(1), **_library.columns(0)}
-        with contextlib.suppress(Error):
-            if "." in name or name in SETTINGS:
-                return case._describe(SETTINGS.get(name, name)).unit
-        return known[name].unit if name in known else UNITS.get(name, "")
+    def unit_of(address: str) -> str:
+        """SI unit of the value at an address."""
+        return case._describe(address).unit
 
-    impacts = {"velocity", "drop_height", "bounce_time", "force", *_library.columns(0)}
-    impacts -= {"loss_tangent", "steps"}
-    lines = read_text(path).splitlines()
-    cells = {cell.strip() for line in lines[:40] for cell in re.split(r"[;,\t\[(]", line)}
-    cells |= {word for line in lines[:40] for word in line.split()}
-    words = {plain_name(cell) for cell in cells if cell}
-    if impacts & words or any(word.endswith("_sigma") for word in words):
-        return Data(path, unit_of).columns
-    ratios = [number(case, f"{name}.poisson_ratio", NOT_GIVEN) for name in materials]
-    curves = read_curves(path, *ratios[:1])
-    names = ["frequency", "storage_modulus", "loss_modulus"]
-    if not curves[0].dynamic:
-        names = ["time", "relaxation_modulus"]
-    rows = [(curve.at, *curve.moduli) for curve in curves]
-    columns = [np.concatenate(parts) for parts in zip(*rows, strict=True)]
-    temperatures = [np.full(len(curve.at), curve.temperature) for curve in curves]
-    return {**dict(zip(names, columns, strict=True)), "temperature": np.concatenate(temperatures)}
+    data = read_data(path, columns, units, unit_of=unit_of)
+    if data.attrs["kind"] in ("dynamic", "relaxation"):
+        ratios = [number(case, f"{name}.poisson_ratio") for name in materials]
+        parts = curves(tensile(data, ratios[0] if ratios else None))
+        for part in parts:
+            part["temperature"] = part.attrs["temperature"]
+        return _arrays(pd.concat(parts)), data.attrs["taken"]
+    return _arrays(data), data.attrs["taken"]
+
+
+def _arrays(data: pd.DataFrame) -> dict[str, Floats]:
+    """Columns as arrays, without the numbers of sets."""
+    return {str(key): data[key].to_numpy(dtype=float) for key in data if key != "set"}
 
 
 def materials_of(addresses: Sequence[str]) -> list[str]:

@@ -1,0 +1,231 @@
+"""Names of measured quantities, in the languages of the instruments, and what a head says."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import re
+import tomllib
+import unicodedata
+from dataclasses import dataclass
+from pathlib import Path
+
+from .. import _library
+from .units import plain_unit, quantities_of, suffix_unit
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A measured quantity: its name, its SI unit, and how others call it."""
+
+    name: str
+    unit: str
+    #: In any case; accents, and marks between words, are left out
+    words: tuple[str, ...] = ()
+    #: Exactly as they stand
+    symbols: tuple[str, ...] = ()
+    #: An example for messages
+    example: str = ""
+    #: Unit that a symbol implies
+    implied: str = ""
+
+
+_NAMES = tomllib.loads(Path(__file__).with_name("names.toml").read_text(encoding="utf-8"))
+#: By their names
+QUANTITIES = {
+    name: Quantity(
+        name, one["unit"], tuple(one.get("words", ())), tuple(one.get("symbols", ())),
+        one.get("example", name), one.get("implied", ""),
+    )
+    for name, one in _NAMES["quantities"].items()
+}  # fmt: skip
+_SYMBOLS = {symbol: one for one in QUANTITIES.values() for symbol in one.symbols}
+_WORDS = {word: one for one in QUANTITIES.values() for word in one.words}
+#: Columns of a laboratory's table that are no data
+ASIDE = {"", *_NAMES["aside"]}
+_SHEAR = re.compile(
+    r"shear|schub|scher|cisaillement|cizalla|せん断|剪切|\bG(?![a-z])|\|G", re.UNICODE
+)
+_TENSILE = re.compile(
+    r"young|tensile|zug|elastizit|traction|引張|拉伸|\bE(?![a-z])|\|E|dehn", re.UNICODE
+)
+_DEGREES = r"([-+]?\d+(?:[.,]\d+)?)\s*(?:°|º|deg\.?)?\s*(C|K)"
+_AT = re.compile(rf"[\s,;@_(\[]+(?:at|bei|à|a|@|T\s*=)?\s*{_DEGREES}\b\s*[)\]]?")
+
+
+@dataclass(frozen=True)
+class Head:
+    """What the head of a column says."""
+
+    #: As it stands in the file
+    text: str
+    #: Name of the quantity, empty if it is not known
+    name: str = ""
+    #: SI unit of the quantity, empty if any will do
+    si: str = ""
+    #: Unit as written, empty if there is none
+    unit: str = ""
+    #: Base of the logarithm that the column holds, 0: none
+    base: float = 0.0
+    #: Temperature of the column [K], nan: not stated
+    temperature: float = float("nan")
+    #: Whether the moduli are shear moduli; None: not stated
+    shear: bool | None = None
+    #: Whether it holds standard errors
+    sigma: bool = False
+    #: Whether the name is that of an angular frequency
+    angular: bool = False
+    #: Whether the unit is that of the symbol, as Hz is of f
+    implied: bool = False
+    #: What is wrong with it, for a message
+    flaw: str = ""
+
+    @property
+    def key(self) -> str:
+        """Name of the column in a table."""
+        return self.name + "_sigma" * self.sigma
+
+
+def plain(text: str) -> str:
+    """A name without what spellings differ in: capitals, accents, marks between words."""
+    text = unicodedata.normalize("NFKC", text)
+    text = re.sub("[’′`´‘]", "'", text).replace("″", "''").replace("”", "''").replace('"', "''")
+    text = unicodedata.normalize("NFKD", text.casefold())
+    text = "".join(c for c in text if not "\u0300" <= c <= "\u036f")
+    text = unicodedata.normalize("NFC", text)
+    return re.sub(r"[\s_\-\u2010-\u2015]+", " ", text).strip(" .:")
+
+
+def _symbol(text: str) -> str:
+    text = unicodedata.normalize("NFKC", text)
+    text = re.sub("[’′`´‘]", "'", text).replace("″", "''").replace("”", "''").replace('"', "''")
+    return re.sub(r"\s+", "", text)
+
+
+@functools.cache
+def _columns() -> dict[str, Quantity]:
+    """Columns of histories and of the summary, by what their names are without marks."""
+    found = {**_library.columns(1), **_library.columns(0)}
+    return {plain(name): Quantity(name, one.unit) for name, one in found.items()
+            if not one.labels}  # fmt: skip
+
+
+def quantity(text: str) -> Quantity | None:
+    """Quantity of a name or of a symbol, None if it is not known."""
+    found = _SYMBOLS.get(_symbol(text)) or _WORDS.get(plain(text))
+    if found or not text:
+        return found
+    by_name = {plain(name): one for name, one in QUANTITIES.items()}
+    if found := by_name.get(plain(text)) or _columns().get(plain(text)):
+        return found
+    # `Relaxation modulus G(t)`, `Frequency, f`: two that agree
+    words = text.replace(",", " ").split()
+    for i in range(1, len(words)):
+        first, last = " ".join(words[:i]), " ".join(words[i:])
+        if last[0] + last[-1] in ("()", "[]"):
+            last = last[1:-1]
+        one, other = _known(first), _known(last)
+        if one and one is other:
+            return one
+    return None
+
+
+def _known(text: str) -> Quantity | None:
+    return _SYMBOLS.get(_symbol(text)) or _WORDS.get(plain(text))
+
+
+def is_address(text: str) -> bool:
+    """Whether a name is the address of a value of a case."""
+    return re.fullmatch(r"[^\W\d][\w ]*\.[^\W\d]\w*(\(\d+\))?", text.strip()) is not None
+
+
+def _parts(text: str) -> list[tuple[str, str]]:
+    """Ways to take a head apart into a name and a unit, the most likely one first."""
+    ways = [(text, "")]
+    if found := re.fullmatch(r"(.+?)\s*\[([^\[\]]*)\]", text):
+        ways.append((found[1], found[2]))
+    if found := re.fullmatch(r"(.+?)\s*\(([^()]*|[^()]*\([^()]*\)[^()]*)\)", text):
+        ways.append((found[1], found[2]))
+    for mark in (r"\s*/\s*", r"\s+in\s+", r"\s*,\s*", r"\s+"):
+        if found := re.fullmatch(rf"(.+?){mark}(\S+(?: \S+)?)", text):
+            if mark == r"\s+" and not quantities_of(found[2]):
+                continue
+            ways.append((found[1], found[2]))
+    if found := re.fullmatch(r"(.+)_([A-Za-zµ%]+(?:_s2?)?)", text):
+        ways += [(found[1], unit) for unit in [suffix_unit(found[2])] if unit]
+    if found := re.fullmatch(r"(.+?)_((?:rad|m|mm|cm)_s2?)", text):
+        ways.append((found[1], suffix_unit(found[2])))
+    return ways
+
+
+def read_head(text: str) -> Head:
+    """What the head of a column says: its quantity, its unit, and what goes with them."""
+    given = text
+    text = unicodedata.normalize("NFKC", text.strip().strip('"')).strip().strip(":")
+    temperature = float("nan")
+    if found := _AT.search(text):
+        temperature = float(found[1].replace(",", ".")) + (273.15 if found[2] == "C" else 0.0)
+        text = (text[: found.start()] + text[found.end() :]).strip()
+    text, base, flaw = _logarithm(text)
+    bare, unit, sigma, known = "", "", False, None
+    for name, of in _parts(text):
+        stem = re.fullmatch(r"(.+?)[ _](?:sigma|sd|std)", name.strip())
+        known = quantity(stem[1] if stem else name)
+        if known or is_address(name):
+            bare, unit, sigma = (stem[1] if stem else name), of, stem is not None
+            break
+    else:
+        # not known: its unit is what stands in brackets
+        unit = next((of for name, of in _parts(text)[1:] if quantities_of(of)), "")
+        return Head(given, unit=unit, base=base, temperature=temperature, flaw=flaw)
+    if not known:
+        return Head(given, re.sub(r"\s+", "_", bare.strip()), "", unit, base, temperature,
+                    sigma=sigma, flaw=flaw)  # fmt: skip
+    angular = known.name == "angular_frequency"
+    implied = not unit and (_symbol(bare) in known.symbols or angular or plain(bare) == "freq")
+    if implied:
+        unit = known.implied
+    shear = None
+    if known.unit == "Pa":
+        name = unicodedata.normalize("NFKC", bare).replace("_", " ")
+        letter = re.match(r"\|?([eEgG])(?=$|[\W\d ]|t\b)", name)
+        kinds = (
+            bool(_SHEAR.search(name)) or bool(letter and letter[1] in "gG"),
+            (bool(_TENSILE.search(name)) or bool(letter and letter[1] in "eE")),
+        )
+        lower = name.casefold()
+        kinds = kinds[0] or bool(_SHEAR.search(lower)), kinds[1] or bool(_TENSILE.search(lower))
+        shear = kinds[0] if kinds[0] != kinds[1] else None
+    name = "frequency" if angular else known.name
+    return Head(given, name, known.unit, "" if unit in ("[]",) else unit, base, temperature, shear,
+                sigma, angular, implied and bool(unit), flaw)  # fmt: skip
+
+
+def _logarithm(text: str) -> tuple[str, float, str]:
+    """A name without the logarithm in front of it, the base, and what is wrong with it."""
+    found = re.match(r"(?i)(log[ _]?10|lg|ln|log)(?![a-z])[\s_]*", text)
+    if not found or quantity(text):
+        return text, 0.0, ""
+    inner = text[found.end() :].strip()
+    # log10(E' [Pa]), log10(E') [Pa]
+    depths = list(itertools.accumulate((c == "(") - (c == ")") for c in inner))
+    if inner.startswith("(") and 0 in depths:
+        end = depths.index(0)
+        inner = f"{inner[1:end]} {inner[end + 1 :].strip()}".strip()
+    which = found[1].lower()
+    base = {"ln": 2.718281828459045, "log": 0.0}.get(which, 10.0)
+    flaw = "" if base else "log may be natural or decimal, expected log10 or ln"
+    return inner, base or 10.0, flaw
+
+
+def canonical(name: str) -> tuple[str, float]:
+    """Name that an option means, and the base of its logarithm, 0: none; empty if not known."""
+    head = read_head(name)
+    if head.unit and quantities_of(head.unit) and "[" in name:
+        return "", 0.0
+    return (head.key if head.name else ""), head.base
+
+
+def plain_units(text: str) -> bool:
+    """Whether a cell is a unit, as those of a second line are."""
+    return text.strip() in ("", "-", "[]", "[-]", "()") or bool(quantities_of(plain_unit(text)))

@@ -1,0 +1,590 @@
+"""Tables of a file on their way into SI units: what kind they are, and what they must have."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._library import Floats, InputError, UsageError
+from .._text import near, printable
+from .grid import Grid, Row, is_missing, is_number, number
+from .names import ASIDE, QUANTITIES, Head, is_address, plain
+from .tables import Choice, Column, Table, groups_of, quantities, tables_of
+from .units import examples, plain_unit, quantities_of, size
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Temperature below which one without a unit is none in kelvin
+_COLDEST = 150.0
+#: Range of measured moduli, times and frequencies
+_LEAST, _MOST = 1e-30, 1e30
+#: Logarithm of the difference between E''/E' and tan delta by which they contradict each other
+_CONTRADICTION = 0.1
+ALIKE = {
+    "dynamic": "moduli against frequency",
+    "relaxation": "moduli against time",
+    "shift": "shift factors",
+    "record": "records of an impact",
+    "impacts": "impacts",
+}
+#: Columns that a table of some kind may have beside those that it needs
+_BESIDE = {
+    "dynamic": {"temperature", "set", "loss_tangent", "complex_modulus", "phase_angle"},
+    "relaxation": {"temperature", "set"},
+    "shift": {"temperature"},
+    "record": {"velocity", "temperature", "radius", "mass", "set"},
+}
+_DYNAMIC = {"storage_modulus", "loss_modulus", "complex_modulus"}
+_IMPACTS = {
+    "velocity",
+    "rebound_velocity",
+    "drop_height",
+    "rebound_height",
+    "bounce_time",
+    "event_time",
+}
+_SETTINGS = {"velocity", "drop_height", "temperature", "radius", "mass", "set"}
+
+
+class Reader:
+    """Tables of a file on their way into SI units."""
+
+    def __init__(
+        self, grid: Grid, choice: Choice, unit_of: Callable[[str], str] | None, whole: bool
+    ) -> None:
+        self.whole = whole
+        self.path, self.grid, self.choice, self.unit_of = grid.path, grid, choice, unit_of
+        self.names: dict[str, str] = {}
+        self.units: dict[str, str] = {}
+        self.left: list[str] = []
+        self.comma = False
+        self._shear: list[tuple[bool, str]] = []
+
+    def parts(self) -> tuple[list[pd.DataFrame], str]:
+        """Frames of the tables of one kind, and the kind."""
+        tables = tables_of(self.grid, self.choice)
+        if text := self.choice.missing(tables):
+            known = ", ".join(f"'{one}'" for table in tables for one in table.texts())
+            raise UsageError(
+                f"--columns: {self.path} has no column '{text}', expected one of {known}"
+            )
+        if not tables:
+            raise self._no_table()
+        for table in tables:
+            table.heads = self.choice.heads(table)
+        kinds = [self._kind(table) for table in tables]
+        whole = [
+            bool(kind) and not self._lacks(table, kind)
+            for table, kind in zip(tables, kinds, strict=True)
+        ]
+        if not any(whole):
+            most = max(range(len(tables)), key=lambda i: (bool(kinds[i]), len(_known(tables[i]))))
+            raise self._incomplete(tables[most], kinds[most])
+        found = {kind for kind, one in zip(kinds, whole, strict=True) if one}
+        if len(found) > 1:
+            raise InputError(
+                f"{self.path}: found {' and '.join(ALIKE[kind] for kind in sorted(found))}"
+                ", expected a file with one of them"
+            )
+        (kind,) = found
+        frames: list[pd.DataFrame] = []
+        for table, one in zip(tables, whole, strict=True):
+            if one:
+                frames += self._frames(table, kind, len(frames))
+            else:
+                self.left += [f"table at line {table.line}"] * bool(_known(table))
+        if (
+            kind in ("record", "impacts")
+            and len({one.attrs["table"] for one in frames}) > 1
+            and (kind == "record" or any({"bounce_time"} & set(one) for one in frames))
+        ):
+            raise InputError(
+                f"{self.path}: found {len(frames)} tables of {ALIKE[kind]}, expected one"
+            )
+        return frames, kind
+
+    def _kind(self, table: Table) -> str:
+        """Kind of a table by the names that it has."""
+        names = _known(table)
+        times = {"time", "run_time"} & names
+        if names & _DYNAMIC and "relaxation_modulus" in names:
+            if "frequency" in names and times:
+                raise InputError(
+                    f"{self.path}:{table.line}: found moduli against frequency and against "
+                    "time in one table, expected one of them, or --columns"
+                )
+            return "relaxation" if times else "dynamic"
+        if names & _DYNAMIC:
+            return "dynamic"
+        if "relaxation_modulus" in names:
+            return "relaxation"
+        if "shift_factor" in names:
+            return "shift"
+        history, impact = quantities()
+        if times and names & (history | {"force", "acceleration"}):
+            return "record"
+        if names & (impact | _IMPACTS) or any(is_address(name) for name in names):
+            return "impacts"
+        if {"loss_tangent", "frequency"} <= names:
+            return "dynamic"
+        return ""
+
+    def _lacks(self, table: Table, kind: str) -> list[str]:
+        """Quantities that a table of some kind needs, and does not have."""
+        names = _known(table)
+        if not self.whole:
+            return []
+        if kind == "dynamic":
+            missing = [] if "frequency" in names else ["frequency"]
+            pair = names & {"storage_modulus", "loss_modulus", "complex_modulus"}
+            if "storage_modulus" not in names and not (
+                names & {"loss_modulus", "complex_modulus"}
+                and (len(pair) > 1 or names & {"loss_tangent", "phase_angle"})
+            ):
+                missing.append("storage_modulus")
+            if (
+                "loss_modulus" not in names
+                and not names & {"loss_tangent", "phase_angle"}
+                and (len(pair) < 2)
+            ):
+                missing.append("loss_modulus")
+            return missing
+        across = {"relaxation": "time", "record": "time", "shift": "temperature"}.get(kind, "")
+        if across == "time" and "run_time" in names:
+            across = ""
+        return [across] if across and across not in names else []
+
+    def _wanted(self, table: Table, kind: str) -> set[str]:
+        """Keys of columns that are taken from a table."""
+        names = _known(table)
+        if kind == "dynamic":
+            found = {"frequency", "storage_modulus", "loss_modulus"} | _BESIDE[kind]
+        elif kind == "relaxation":
+            found = {"time", "relaxation_modulus"} | _BESIDE[kind]
+        elif kind == "shift":
+            found = {"shift_factor"} | _BESIDE[kind]
+        elif kind == "record":
+            found = {"time", "force", "acceleration"} | quantities()[0] | _BESIDE[kind]
+        else:
+            found = {name for name in names if name not in ("time", "run_time", "frequency")}
+        if "time" in found and "time" not in names:
+            found = found - {"time"} | {"run_time"}
+        return {key for name in found for key in (name, f"{name}_sigma")}
+
+    def _frames(self, table: Table, kind: str, first: int) -> list[pd.DataFrame]:
+        """Frames of a table: one for each temperature in its heads, and below each title."""
+        if table.flaw:
+            raise InputError(table.flaw)
+        wanted = self._wanted(table, kind)
+        if kind == "impacts":
+            self._all_known(table)
+        groups = groups_of(table, self.path, wanted)
+        taken = {column.index for _, group in groups for column in group.values()}
+        self.left += [
+            head.text.strip()
+            for i, head in enumerate(table.heads)
+            if i not in taken and head.text.strip() and head.text.strip() not in self.left
+        ]
+        units = {}
+        for _, group in groups:
+            units.update(self._units(table, group))
+        frames: list[pd.DataFrame] = []
+        for tag, group in groups:
+            for part, (title, rows) in enumerate(table.parts):
+                at = title if math.isnan(tag) else tag
+                frame = self._frame(
+                    Table(table.line, table.heads, [(at, rows)]), group, units, kind
+                )
+                if frame is None:
+                    continue
+                if "temperature" not in frame and math.isfinite(at):
+                    frame["temperature"] = at
+                    self.units["temperature"] = "K"
+                own = frame["set"].to_numpy() if "set" in frame else np.zeros(len(frame))
+                changes = np.concatenate([[0], np.cumsum(np.diff(own) != 0)])
+                frame["set"] = first + len(frames) + changes
+                first += int(changes[-1])
+                frame.attrs["table"] = (table.line, part, tag)
+                frames.append(frame)
+        return frames
+
+    def _frame(
+        self, table: Table, group: dict[str, Column], units: dict[int, str], kind: str
+    ) -> pd.DataFrame | None:
+        """Rows of a table in SI units."""
+        import pandas as pd
+
+        rows = table.rows()
+        # rows without a number in any column that is taken belong to the columns of another curve
+        rows = [row for row in rows if not all(is_missing(one.cell(row)) for one in group.values())]
+        if not rows:
+            return None
+        values: dict[str, Floats] = {}
+        for key, column in group.items():
+            name = "time" if key == "run_time" else key
+            values[name] = self._numbers(rows, column, units.get(column.index, ""), name, kind)
+            self.names.setdefault(name, column.head.text.strip())
+            self.units[name] = column.head.si
+            if column.head.shear is not None:
+                self._shear.append((column.head.shear, column.head.text))
+        lines = [row.line for row in rows]
+        frame = pd.DataFrame(values, index=pd.Index(lines, name="line"))
+        if kind == "dynamic" and self.whole:
+            frame = self._dynamic(frame, table)
+        elif kind == "impacts":
+            frame = self._impacts(frame)
+        if self.whole and kind in ("dynamic", "relaxation", "shift"):
+            self._positive(frame, kind)
+        return frame
+
+    def _numbers(
+        self, rows: Sequence[Row], column: Column, unit: str, name: str, kind: str
+    ) -> Floats:
+        """Numbers of a column in SI units, nan where there is none."""
+        factor, offset = (size(unit, column.head.si) if unit else None) or (1.0, 0.0)
+        if column.head.sigma:
+            offset = 0.0
+        found = np.empty(len(rows))
+        commas = points = ambiguous = 0
+        for i, row in enumerate(rows):
+            cell, place = column.cell(row), f"{self.path}:{row.line}"
+            if is_number(cell):
+                found[i] = number(cell)
+                if "," in cell:
+                    commas += 1
+                    ambiguous += len(cell.rpartition(",")[2]) == 3 and cell.lstrip("+-")[:1] != "0"
+                points += "." in cell
+                if commas and points:
+                    raise InputError(
+                        f"{place}: found decimal commas and decimal points in column "
+                        f"'{column.head.text}', expected one of them"
+                    )
+                if not math.isfinite(found[i]):
+                    raise InputError(
+                        f"{place}: found '{cell}' in column '{column.head.text}', "
+                        "expected a number that can be represented"
+                    )
+            elif is_missing(cell) and (kind in ("impacts", "record") or name in ("temperature",)):
+                found[i] = math.nan
+            else:
+                what = ": no number" if not cell else f"'{printable(cell[:40])}'"
+                raise InputError(
+                    f"{place}: found {what.removeprefix(': ')} in column "
+                    f"'{column.head.text}', expected a number"
+                )
+        if ambiguous == commas > 0 and self.grid.separator == ",":
+            raise InputError(
+                f"{self.path}: found numbers such as {_first_comma(rows, column)} in column "
+                f"'{column.head.text}', whose comma may be one of thousands, expected "
+                "decimal points, or semicolons between the columns"
+            )
+        self.comma |= commas > 0
+        if column.head.base:
+            if column.head.sigma:
+                raise InputError(
+                    f"{self.path}: found a standard error of a logarithm, "
+                    f"'{column.head.text}', expected one of the quantity"
+                )
+            with np.errstate(over="ignore"):
+                found = column.head.base**found
+        return found * factor + offset
+
+    def _units(self, table: Table, group: dict[str, Column]) -> dict[int, str]:
+        """Units of columns by their indices: of the file or the user, SI if none has one."""
+        place = f"{self.path}:{table.line}" if table.line else self.path
+        found: dict[int, str] = {}
+        stated = False
+        for key, column in group.items():
+            head = column.head
+            given = self._given(key, column, group)
+            unit = head.unit or given
+            if given and head.unit and size(given, head.si) != size(head.unit, head.si):
+                if not head.implied:
+                    raise UsageError(
+                        f"--units: found {given}, but {place} says '{head.unit}' for '{head.text}'"
+                    )
+                unit = given
+            if unit and not quantities_of(unit) and head.si == "":
+                unit = ""
+            if unit and head.si and size(unit, head.si) is None:
+                raise InputError(
+                    f"{place}: found '{plain_unit(unit)}' as unit of '{head.text}', expected "
+                    f"{examples(head.si)}{_meant(unit, head.si)}"
+                )
+            if head.si == "rad/s" and table.line:
+                self._frequency(head, unit, place, bool(given))
+            found[column.index] = unit
+            stated |= (
+                bool(unit)
+                and not (head.implied and unit == head.unit)
+                and head.si not in ("1", "", "K")
+            )
+        for key, column in group.items():
+            head = column.head
+            base = group.get(key.removesuffix("_sigma"))
+            if head.sigma and not found[column.index] and base:
+                found[column.index] = found[base.index]
+            missing = not found[column.index]
+            if head.si == "K" and missing and not head.sigma:
+                self._kelvin(table, column, place)
+            elif head.si == "rad/s" and missing and table.line:
+                raise InputError(
+                    f"{place}: found no unit of '{head.text}', expected one of "
+                    f"{examples(head.si)} in its head, or --units"
+                )
+            elif missing and stated and head.si not in ("1", "", "K"):
+                raise InputError(
+                    f"{place}: found no unit of '{head.text}', while other columns have one, "
+                    f"expected one of {examples(head.si)} in its head, or --units"
+                )
+        return found
+
+    def _given(self, key: str, column: Column, group: dict[str, Column]) -> str:
+        """Unit that the user gives to a column, empty if none."""
+        head = column.head
+        for unit in self.choice.free:
+            if not quantities_of(unit):
+                raise UsageError(
+                    f"--units: found '{unit}', expected a unit such as Hz, rad/s, s, MPa or C"
+                )
+        if key in self.choice.units:
+            unit = self.choice.units[key]
+            if head.si and size(unit, head.si) is None:
+                raise UsageError(f"--units: found '{unit}' for {key}, expected {examples(head.si)}")
+            return unit
+        fits = [unit for unit in self.choice.free if head.si and size(unit, head.si)]
+        own = size(head.unit, head.si) if head.unit else None
+        return next((unit for unit in fits if size(unit, head.si) == own), fits[0] if fits else "")
+
+    def _frequency(self, head: Head, unit: str, place: str, given: bool) -> None:
+        """Refuse a unit that contradicts the kind of a frequency."""
+        text, usual = head.text, plain_unit(unit)
+        if head.angular and usual.endswith("Hz"):
+            raise InputError(
+                f"{place}: found Hz as unit of the angular frequency '{text}', expected "
+                f'rad/s, or --columns "frequency={text}" if it is one in Hz'
+            )
+        if not head.angular and usual == "1/s" and not given:
+            raise InputError(
+                f"{place}: found 1/s as unit of '{text}', which may be Hz or rad/s, expected "
+                "one of them"
+            )
+
+    def _kelvin(self, table: Table, column: Column, place: str) -> None:
+        """Refuse temperatures without a unit that are none in kelvin."""
+        values = [number(column.cell(row)) for row in table.rows()]
+        warmest = np.nanmax(values)
+        if warmest < _COLDEST:
+            raise InputError(
+                f"{place}: column '{column.head.text}': found at most {warmest:g} K, expected "
+                f"{column.head.text} [C] for degrees Celsius, or [K]"
+            )
+
+    def _all_known(self, table: Table) -> None:
+        """Refuse numbers of a table of impacts whose names are not known."""
+        history, impact = quantities()
+        known = [*impact, *_IMPACTS, *_SETTINGS]
+        for i, head in enumerate(table.heads):
+            if plain(head.text) in ASIDE or plain(head.text).rstrip(" .") in ASIDE:
+                continue
+            cells = [row.cells[i] if i < len(row.cells) else "" for row in table.rows()]
+            if not any(map(is_number, cells)) or not head.text.strip():
+                continue
+            if head.name and is_address(head.name) and head.name not in QUANTITIES:
+                if self.unit_of is not None:
+                    unit = self.unit_of(head.name)
+                    table.heads[i] = dataclasses.replace(head, si=unit)
+                elif head.unit and quantities_of(head.unit):
+                    table.heads[i] = dataclasses.replace(head, si=quantities_of(head.unit)[0])
+                continue
+            if head.flaw or head.name not in {*impact, *_IMPACTS, *_SETTINGS, "time", "run_time"}:
+                bare = plain(head.text.split("[")[0].split("(")[0]).replace(" ", "_")
+                raise InputError(
+                    f"{self.path}:{table.line}: found the column '{head.text}', expected one of "
+                    f"velocity, rebound_velocity, drop_height, rebound_height, bounce_time, cor, "
+                    f"cor_sphere, resilience, contact_time, max_force, temperature, radius, mass, "
+                    f"another column of the summary or an address{near(bare, known)}; or --columns "
+                    f'"NAME={head.text}"'
+                )
+
+    def _dynamic(self, frame: pd.DataFrame, table: Table) -> pd.DataFrame:
+        """Storage and loss moduli from what there is; refused if they contradict each other."""
+        size_of = frame.get("complex_modulus")
+        tangent = frame.get("loss_tangent")
+        if tangent is None and "phase_angle" in frame:
+            tangent = np.tan(frame["phase_angle"])
+        storage, loss = frame.get("storage_modulus"), frame.get("loss_modulus")
+        if storage is not None and loss is not None:
+            for name, told, made in (
+                ("tan delta", tangent, loss / storage),
+                ("the complex modulus", size_of, np.hypot(storage, loss)),
+            ):
+                if told is None:
+                    continue
+                with np.errstate(all="ignore"):
+                    off = float(np.nanmedian(np.abs(np.log(made / told))))
+                if off > _CONTRADICTION:
+                    raise InputError(
+                        f"{self.path}:{table.line}: found {name} that contradicts the storage "
+                        f"and loss moduli (by {100 * np.expm1(off):.0f} %), expected columns "
+                        "and units that agree"
+                    )
+        if storage is None:
+            if size_of is None:
+                storage = loss / tangent
+            elif tangent is not None:
+                storage = size_of / np.sqrt(1 + tangent**2)
+            else:
+                storage = np.sqrt(size_of**2 - loss**2)
+        if loss is None:
+            loss = storage * tangent if tangent is not None else np.sqrt(size_of**2 - storage**2)
+        frame["storage_modulus"], frame["loss_modulus"] = storage, loss
+        self.units["storage_modulus"] = self.units["loss_modulus"] = "Pa"
+        order = ["frequency", "storage_modulus", "loss_modulus"]
+        rest = [
+            name
+            for name in frame
+            if name not in order
+            and name.removesuffix("_sigma")
+            not in ("loss_tangent", "complex_modulus", "phase_angle")
+        ]
+        return frame[[*order, *rest]]
+
+    def _impacts(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """Times of events as times in flight, without the last one that has not ended."""
+        if "event_time" in frame:
+            if "bounce_time" not in frame:
+                frame["bounce_time"] = -frame["event_time"].diff(-1)
+                self.units["bounce_time"] = "s"
+                self.names["bounce_time"] = f"differences of {self.names['event_time']}"
+            frame = frame.drop(columns="event_time")
+            self.names.pop("event_time", None)
+        if "bounce_time" in frame:
+            # a stopwatch writes 0 for the flight that has not ended
+            ended = ~(frame["bounce_time"].isna() | (frame["bounce_time"] == 0))
+            last = np.flatnonzero(ended)
+            frame = frame.iloc[: last[-1] + 1 if last.size else 0]
+        return frame
+
+    def _positive(self, frame: pd.DataFrame, kind: str) -> None:
+        """Refuse moduli, times and frequencies that are not positive."""
+        names = {
+            "dynamic": ["frequency", "storage_modulus", "loss_modulus"],
+            "relaxation": ["time", "relaxation_modulus"],
+            "shift": ["shift_factor"],
+        }[kind]
+        names += [f"{name}_sigma" for name in names if f"{name}_sigma" in frame]
+        for name in names:
+            values = frame[name].to_numpy()
+            with np.errstate(invalid="ignore"):
+                bad = ~((values > 0) if kind == "shift" else (values >= _LEAST) & (values <= _MOST))
+            if bad.any():
+                at = int(np.argmax(bad))
+                limits = (
+                    "> 0"
+                    if kind == "shift" or not values[at] > 0
+                    else (f"from {_LEAST:g} to {_MOST:g} in SI units")
+                )
+                raise InputError(
+                    f"{self.path}:{frame.index[at]}: found {values[at]:.6g}, expected a "
+                    f"{name.replace('_', ' ')} {limits}"
+                )
+
+    def _no_table(self) -> InputError:
+        numbers = [row for row in self.grid.rows if row.numbers()]
+        if not numbers:
+            last = self.grid.rows[-1].line if self.grid.rows else 1
+            return InputError(f"{self.path}:{last}: found no numbers, expected a table of them")
+        row = numbers[0]
+        return InputError(
+            f"{self.path}:{row.line}: found {row.filled()} column{'s' * (row.filled() > 1)} "
+            "without names, expected a head above them, such as 't [s],E [Pa]', or --columns with "
+            "their names, such as time,relaxation_modulus or frequency,storage_modulus,loss_modulus"
+        )
+
+    def _incomplete(self, table: Table, kind: str) -> InputError:
+        """What a table lacks, and which column it could be."""
+        place = f"{self.path}:{table.line}"
+        flawed = [head for head in table.heads if head.flaw]
+        free = [
+            head for head in table.heads if head.text.strip() and not (head.name and not head.flaw)
+        ]
+        told = ", ".join(f"'{text}'" for text in table.texts()[:12])
+        if flawed:
+            return InputError(f"{place}: '{flawed[0].text}': {flawed[0].flaw}")
+        if table.flaw:
+            return InputError(table.flaw)
+        if not kind:
+            could = free[-1].text if free else "HEAD"
+            return InputError(
+                f"{place}: found the columns {told}, none of which is a quantity that is known, "
+                "expected a relaxation modulus, storage and loss modulus, force, cor ...; if "
+                f'one is, say which: --columns "relaxation_modulus={could}"'
+            )
+        lacks = self._lacks(table, kind)
+        words = " and of the ".join(name.replace("_", " ") for name in lacks)
+        names = " and ".join(QUANTITIES[name].example for name in lacks)
+        could = free[-1].text if free else "HEAD"
+        return InputError(
+            f"{place}: found {told}, but no column of the {words}, expected one named as "
+            f'{names}, or --columns "{lacks[0]}={could}"'
+        )
+
+    def shear(self) -> bool | None:
+        """Whether the moduli are shear moduli, None: the names do not say."""
+        kinds = {kind for kind, _ in self._shear}
+        if len(kinds) > 1:
+            texts = " and ".join(
+                f"'{next(t for k, t in self._shear if k is kind)}'" for kind in kinds
+            )
+            raise InputError(
+                f"{self.path}: found shear and tensile moduli, {texts}, expected one kind"
+            )
+        return kinds.pop() if kinds else None
+
+    def taken(self, frame: pd.DataFrame) -> str:
+        """A line that says which columns are what."""
+        parts = [
+            f"{name} from '{text}'" if name != text else name
+            for name, text in self.names.items()
+            if name.removesuffix("_sigma") in frame
+            or name in ("loss_tangent", "complex_modulus", "phase_angle")
+        ]
+        n = len(frame)
+        line = f"{self.path}: {n} point{'s' * (n > 1)}: {', '.join(parts)}"
+        if "set" in frame:
+            line += f"; {frame['set'].nunique()} sets"
+        if self.comma:
+            line += "; with decimal commas"
+        if self.left:
+            more = f" and {len(self.left) - 8} more" if len(self.left) > 8 else ""
+            line += f"; not taken: {', '.join(self.left[:8])}{more}"
+        return printable(line)
+
+
+def _known(table: Table) -> set[str]:
+    """Names of quantities that a table has, without those whose units belong to others."""
+    return {
+        head.name
+        for head in table.heads
+        if head.name
+        and not head.flaw
+        and not head.sigma
+        and not (head.name == "velocity" and plain_unit(head.unit).startswith("rad/"))
+    }
+
+
+def _first_comma(rows: Sequence[Row], column: Column) -> str:
+    return next(column.cell(row) for row in rows if "," in column.cell(row))
+
+
+def _meant(unit: str, si: str) -> str:
+    """A unit of a quantity that is like another text."""
+    known = examples(si).replace(" or ", ", ").split(", ")
+    found = next((one for one in known if one.lower() == plain_unit(unit).lower()), "")
+    return f"; did you mean {found}?" if found else ""

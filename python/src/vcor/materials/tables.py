@@ -1,0 +1,436 @@
+"""Tables of a file: where they are, what their heads say, and which columns belong together."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from .. import _library
+from .._library import InputError, UsageError
+from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
+from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
+from .units import ZERO_C, plain_unit, size
+
+_DEGREES = r"([-+]?\d+(?:[.,]\d+)?)\s*(?:°|º|deg\.?)?\s*(C|K)\b"
+_TITLE = re.compile(
+    r"\W*(?:set |sample |soll)?(?:T|temp\.?|temperature|temperatur|température|temperatura|温度)?"
+    rf"\W*{_DEGREES}\W*",
+    re.IGNORECASE,
+)
+_STEP = re.compile(
+    r"\W*(step|sweep|interval|frequency sweep|schritt|abschnitt|sheet|set|stress relax"
+    r"|relaxation|étape|paso|block|isotherm)",
+    re.IGNORECASE,
+)
+
+
+@dataclass
+class Table:
+    """Rows of numbers under one head."""
+
+    #: Line of the head, 0: there is none
+    line: int
+    heads: list[Head]
+    #: Temperature in a title [K], nan: none, and rows, for each part below a title
+    parts: list[tuple[float, list[Row]]]
+    #: What is wrong with it, if it is used
+    flaw: str = ""
+
+    def rows(self) -> list[Row]:
+        """All rows."""
+        return [row for _, rows in self.parts for row in rows]
+
+    def texts(self) -> list[str]:
+        """Heads that say something."""
+        return [head.text.strip() for head in self.heads if head.text.strip()]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that is taken."""
+
+    index: int
+    head: Head
+
+    def cell(self, row: Row) -> str:
+        """Its cell in a row, empty if the row ends before."""
+        return row.cells[self.index] if self.index < len(row.cells) else ""
+
+
+#: Columns of one curve by their keys, and its temperature [K], nan: not in the head
+Group = tuple[float, dict[str, Column]]
+
+
+class Choice:
+    """Which columns and units a user says the file has."""
+
+    def __init__(
+        self,
+        columns: Mapping[str, str | int] | Sequence[str] | None,
+        units: Mapping[str, str] | Sequence[str] | str | None,
+    ) -> None:
+        if isinstance(columns, str):
+            columns = columns.split(",")
+        #: Names of the columns of a file without a head, in their order
+        self.order = [] if columns is None or isinstance(columns, Mapping) else list(columns)
+        self.columns: dict[str, tuple[str, float]] = {}
+        if isinstance(columns, Mapping):
+            for key, text in columns.items():
+                name, base = _named(key)
+                self.columns[name] = str(text), base
+        for name in filter(None, map(str.strip, self.order)):
+            _named(name)
+        self.units: dict[str, str] = {}
+        if isinstance(units, Mapping):
+            self.units = {_named(key)[0]: unit for key, unit in units.items()}
+            units = None
+        if isinstance(units, str):
+            units = units.split(",")
+        #: Units of columns without one, each for those of its quantity
+        self.free = [unit.strip() for unit in units or [] if unit.strip()]
+
+    def heads(self, table: Table) -> list[Head]:
+        """Heads of a table, with those that the user says in place of those in the file."""
+        heads = list(table.heads)
+        said = set()
+        for name, (text, base) in self.columns.items():
+            at = [i for i, head in enumerate(heads) if _matches(head, text)]
+            if not at and text.isdigit() and 0 < int(text) <= len(heads):
+                at = [int(text) - 1]
+            if len(at) != 1:
+                continue
+            told, head = read_head(name), heads[at[0]]
+            heads[at[0]] = replace(
+                told,
+                text=head.text,
+                unit=head.unit or _unit_of(head),
+                base=base or head.base,
+                temperature=head.temperature,
+                flaw="",
+                shear=told.shear if head.shear is None else head.shear,
+                angular=False,
+            )
+            said.add((at[0], told.key))
+        # what the user says is that quantity, nothing else is
+        keys = {key for _, key in said}
+        return [
+            replace(head, name="", flaw="")
+            if head.key in keys and (i, head.key) not in said
+            else head
+            for i, head in enumerate(heads)
+        ]
+
+    def missing(self, tables: Sequence[Table]) -> str:
+        """A text of --columns that no table has."""
+        for text, _ in self.columns.values():
+            if not any(_matches(head, text) for table in tables for head in table.heads) and not (
+                text.isdigit() and any(0 < int(text) <= len(table.heads) for table in tables)
+            ):
+                return text
+        return ""
+
+
+def _named(key: str) -> tuple[str, float]:
+    """Name that a user gives to a column."""
+    name, base = canonical(key)
+    if not name:
+        raise UsageError(
+            f"unknown quantity '{key}', expected a name such as storage_modulus, "
+            "frequency, temperature, cor or time"
+        )
+    return name, base
+
+
+def _matches(head: Head, text: str) -> bool:
+    given = plain(text)
+    return given != "" and given in (plain(head.text), plain(re.sub(r"[\[(/].*", "", head.text)))
+
+
+def _unit_of(head: Head) -> str:
+    """Unit in brackets of a head whose name is not known."""
+    found = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", head.text)
+    return found[1] if found else ""
+
+
+def tables_of(grid: Grid, choice: Choice) -> list[Table]:
+    """Tables of a file: runs of numbers, and the heads above them."""
+    hints = _hints(grid)
+    found: list[Table] = []
+    rows, start = grid.rows, 0
+    gap: list[Row] = []
+    stray: list[Row] = []
+    while start < len(rows):
+        if rows[start].remark or not rows[start].numbers():
+            gap.append(rows[start])
+            start += 1
+            continue
+        end = start
+        while end < len(rows) and (rows[end].numbers() or rows[end].remark):
+            end += 1
+        run = [row for row in rows[start:end] if not row.remark]
+        table = _table(grid, gap, run, hints, choice)
+        title = _titled(gap)
+        if table:
+            table.parts = [(title, run)]
+            found.append(table)
+            stray = []
+        elif found and math.isfinite(title) and not found[-1].flaw:
+            found[-1].parts.append((title, run))
+        elif len(run) == 1 and any(math.isfinite(tag) for tag in _tags(run[0], len(run[0].cells))):
+            # temperatures above the names of columns
+            gap, start = [*gap, *run], end
+            continue
+        elif found:
+            stray += [row for row in run if _fits(row, found[-1])]
+            if len(stray) > 1 or (stray and end == len(rows)):
+                text = gap[-1].text if gap else ""
+                found[-1].flaw = (
+                    f"{grid.path}:{stray[0].line}: found numbers below '{text[:40]}', "
+                    "expected a head above them"
+                )
+        gap, start = [], end
+    if not found and choice.order:
+        run = [row for row in rows if row.numbers()]
+        if run:
+            found = [_nameless(grid, run, choice)]
+    return found
+
+
+def _table(
+    grid: Grid, gap: list[Row], run: list[Row], hints: Mapping[str, str], choice: Choice
+) -> Table | None:
+    """A run of numbers with the head that stands in the lines above it, None: there is none."""
+    width = max(i for row in run for i, cell in enumerate(row.cells) if cell) + 1
+    above = [row for row in gap if row.remark or any(row.cells)]
+    units: list[str] | None = None
+    while above:
+        row = above.pop()
+        if not row.remark and _TITLE.fullmatch(" ".join(filter(None, row.cells))):
+            continue
+        texts = _cells(grid, row, width)
+        if texts is None:
+            if row.remark:
+                continue
+            texts = row.cells
+        if units is None and _is_units(texts, choice):
+            units = texts
+            continue
+        heads = [read_head(text) for text in texts]
+        said = any(_matches(head, text) for head in heads for text, _ in choice.columns.values())
+        if not said and not any(head.name for head in heads):
+            if row.remark and units is None:
+                continue
+            # a line of text: it may be a head whose names are not known
+            if sum(map(bool, texts)) < 2 and width > 1:
+                return None
+        if units:
+            heads = [
+                _with_unit(head, units[i] if i < len(units) else "") for i, head in enumerate(heads)
+            ]
+        heads = [_with_unit(head, hints.get(plain(head.text), "")) for head in heads]
+        tags = _tags(above[-1] if above else None, len(heads))
+        heads = [
+            head if math.isfinite(head.temperature) else replace(head, temperature=tag)
+            for head, tag in zip(heads, tags, strict=True)
+        ]
+        table = Table(row.line, heads, [])
+        if len(heads) < width and any(
+            is_number(cell) for one in run for cell in one.cells[len(heads) :]
+        ):
+            table.flaw = (
+                f"{grid.path}:{row.line}: found {width} columns, but the head has "
+                f"{len(heads)} names"
+            )
+            if grid.separator == ",":
+                table.flaw += "; expected semicolons or tabs between numbers with decimal commas"
+        return table
+    return None
+
+
+def _nameless(grid: Grid, run: list[Row], choice: Choice) -> Table:
+    """A table without a head, by the names that the user gives."""
+    width = max(len(row.cells) for row in run)
+    if len(choice.order) != width:
+        raise UsageError(
+            f"--columns: found {len(choice.order)} names, but {grid.path} has {width} columns"
+        )
+    heads = []
+    for i, text in enumerate(choice.order):
+        name, base = _named(text) if text.strip() else ("", 0.0)
+        head = read_head(name) if name else Head("")
+        heads.append(replace(head, text=f"column {i + 1}", base=base))
+    return Table(0, heads, [(math.nan, run)])
+
+
+def _cells(grid: Grid, row: Row, width: int) -> list[str] | None:
+    """Cells of a line above a table with some number of columns, None: it has others."""
+    if not row.remark and grid.separator != " ":
+        cells = list(row.cells)
+        while len(cells) > width and not cells[-1]:
+            cells.pop()
+        return cells
+    ways = [split_line(row.text, mark) for mark in "\t;,"]
+    ways.append([cell.strip() for cell in re.split(r"\s{2,}|\t", row.text)])
+    # names with their units in brackets, names of one word with or without a unit
+    ways.append(
+        [
+            cell.strip()
+            for cell in re.findall(
+                r"[^\[\](]+(?:\[[^\]]*\]|\((?!t\)|w\)|f\)|ω\))[^)]*\))", row.text
+            )
+        ]
+    )
+    ways.append(re.findall(r"[^\s\[]+(?:\s*\[[^\]]*\]|\s\([^)]*\))?", row.text))
+    if not row.remark:
+        ways = [*ways[-3:], row.cells]
+    ways += [way[1:] for way in ways if way and not way[0]]
+    return next((way for way in ways if len(way) == width), None)
+
+
+def _is_units(texts: list[str], choice: Choice) -> bool:
+    """Whether cells are a line of units."""
+    if any(plain(text) == plain(cell) for text, _ in choice.columns.values() for cell in texts):
+        return False
+    told = [cell for cell in texts if cell.strip()]
+    units = [cell for cell in told if plain_units(cell)]
+    real = [cell for cell in units if plain_unit(cell) not in ("", "-")]
+    names = [cell for cell in told if read_head(cell).name in QUANTITIES and not plain_units(cell)]
+    return bool(real) and len(names) < len(real) and 2 * len(units) >= len(told)
+
+
+def _with_unit(head: Head, cell: str) -> Head:
+    """A head with the unit of the line below it."""
+    if plain_unit(cell) in ("", "-") or (head.unit and not head.implied):
+        return head
+    return replace(head, unit=plain_unit(cell), implied=False)
+
+
+def _hints(grid: Grid) -> dict[str, str]:
+    """Units that remarks `NAME [UNIT] meaning` state, as vcor writes them."""
+    found = {}
+    for remark in grid.remarks:
+        if told := re.match(r"(\w+) \[([^\]]+)\](?: |$)", remark):
+            found[plain(told[1])] = told[2]
+    return found
+
+
+def _kelvin(value: str, unit: str) -> float:
+    return float(value.replace(",", ".")) + (ZERO_C if unit.upper() == "C" else 0.0)
+
+
+def _titled(gap: list[Row]) -> float:
+    """Temperature in the lines above a table [K], nan if there is none."""
+    for row in reversed(gap):
+        text = " ".join(filter(None, row.cells)) if row.cells else row.text
+        text = re.sub(r"[;,\t]+(?!\d)", " ", text)
+        if found := _TITLE.fullmatch(text):
+            return _kelvin(found[1], found[2])
+        many = re.findall(_DEGREES, text)
+        if _STEP.match(text) and len(many) == 1:
+            return _kelvin(*many[0])
+    return math.nan
+
+
+def _tags(row: Row | None, width: int) -> list[float]:
+    """Temperatures of columns by the line above their names, each up to the next one."""
+    found = [math.nan] * width
+    if row is None or row.remark:
+        return found
+    first = read_head(row.cells[0]) if row.cells else Head("")
+    for i, cell in enumerate(row.cells[:width]):
+        if told := _TITLE.fullmatch(cell):
+            found[i] = _kelvin(told[1], told[2])
+        elif first.name == "temperature" and is_number(cell) and size(first.unit, "K"):
+            found[i] = _kelvin(cell, plain_unit(first.unit))
+        elif i and not cell:
+            found[i] = found[i - 1]
+    return found
+
+
+def _fits(row: Row, table: Table) -> bool:
+    """Whether a row has numbers in all columns with names that are known."""
+    at = [i for i, head in enumerate(table.heads) if head.name]
+    return all(i < len(row.cells) and is_number(row.cells[i]) for i in at)
+
+
+def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
+    """Columns that are wanted, once each, for each temperature in the heads."""
+    by_key: dict[str, list[Column]] = {}
+    for i, head in enumerate(table.heads):
+        if head.name and head.key in wanted and not all(map(is_missing, _column(table, i))):
+            by_key.setdefault(head.key, []).append(Column(i, head))
+    tags: list[float] = []
+    for columns in by_key.values():
+        for column in columns:
+            at = column.head.temperature
+            if math.isfinite(at) and at not in tags:
+                tags.append(at)
+    if not tags:
+        return [(math.nan, {key: _one(table, path, key, some) for key, some in by_key.items()})]
+    groups: list[Group] = []
+    for tag in tags:
+        found = {}
+        for key, some in by_key.items():
+            own = [one for one in some if one.head.temperature == tag]
+            common = [one for one in some if math.isnan(one.head.temperature)]
+            if own or common:
+                found[key] = _one(table, path, key, own or common)
+        groups.append((tag, found))
+    return groups
+
+
+def _column(table: Table, index: int) -> list[str]:
+    return [row.cells[index] if index < len(row.cells) else "" for row in table.rows()]
+
+
+def _one(table: Table, path: str, key: str, columns: list[Column]) -> Column:
+    """One of several columns of a quantity, which hold the same within their digits."""
+    best = max(columns, key=lambda one: (one.head.angular, bool(one.head.unit)))
+    for other in columns:
+        if other is best:
+            continue
+        if not _same(table, best, other):
+            first, second = sorted((best, other), key=lambda one: one.index)
+            name = key.removesuffix("_sigma")
+            raise InputError(
+                f"{path}:{table.line}: found two columns of {name.replace('_', ' ')} with "
+                f"different numbers, '{first.head.text}' (column {first.index + 1}) and "
+                f"'{second.head.text}' "
+                f"(column {second.index + 1}), expected one, or --columns "
+                f'"{key}={_option(table, second)}"'
+            )
+    return best
+
+
+def _option(table: Table, column: Column) -> str:
+    """How --columns names a column."""
+    alike = [head for head in table.heads if plain(head.text) == plain(column.head.text)]
+    return column.head.text if len(alike) == 1 else str(column.index + 1)
+
+
+def _same(table: Table, one: Column, other: Column) -> bool:
+    """Whether two columns hold the same numbers within their digits."""
+    first, second = (
+        size(c.head.unit, c.head.si) if c.head.unit else (1.0, 0.0) for c in (one, other)
+    )
+    if first is None or second is None or one.head.base != other.head.base:
+        return False
+    scales = first, second
+    for row in table.rows():
+        cells = one.cell(row), other.cell(row)
+        if is_missing(cells[0]) and is_missing(cells[1]):
+            continue
+        if not all(map(is_number, cells)):
+            return False
+        values = [number(c) * s[0] + s[1] for c, s in zip(cells, scales, strict=True)]
+        slack = sum(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
+        if abs(values[0] - values[1]) > 1.01 * slack + 1e-12 * abs(values[0]):
+            return False
+    return True
+
+
+def quantities() -> tuple[set[str], set[str]]:
+    """Names of quantities of a history, and of an impact."""
+    return set(_library.columns(1)) - {"time"}, set(_library.columns(0))

@@ -1,0 +1,531 @@
+"""Files of laboratories: read right, or refused with the line and what is expected."""
+
+import io
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+import vcor
+from vcor.materials import grid
+from vcor.materials.data import columns_option, curves, read_data, read_moduli
+
+OMEGA = np.geomspace(1, 1000, 7)
+STORAGE = 2e6 + 3e7 * OMEGA**2 / (1e4 + OMEGA**2)
+LOSS = 3e7 * 100 * OMEGA / (1e4 + OMEGA**2)
+HERTZ = OMEGA / (2 * np.pi)
+
+
+def table(*columns, head="", mark=",", digits=9, comma=False):
+    rows = [mark.join(f"{x:.{digits}g}" for x in row) for row in zip(*columns, strict=True)]
+    text = "\n".join(rows) + "\n"
+    return head + (text.replace(".", ",") if comma else text)
+
+
+def read(tmp_path, text, *options, name="data.csv", **named):
+    path = tmp_path / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_data(path, *options, **named)
+
+
+def is_the_material(data):
+    assert data.attrs["kind"] == "dynamic"
+    assert np.allclose(data.frequency, OMEGA, rtol=1e-6)
+    assert np.allclose(data.storage_modulus, STORAGE, rtol=1e-6)
+    assert np.allclose(data.loss_modulus, LOSS, rtol=1e-6)
+
+
+def refused(tmp_path, text, *said, options=(), kind=vcor.InputError):
+    with pytest.raises(kind) as caught:
+        read(tmp_path, text, *options)
+    message = str(caught.value)
+    assert "\n" not in message
+    for words in said:
+        assert words in message
+    return message
+
+
+# ------------------------------------------------------------------------------ ways to write
+
+HEADS = {
+    "numpy.savetxt": ("# f [Hz],E' [MPa],E'' [MPa]\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "savetxt, two lines": ("# f,E',E''\n# Hz,MPa,MPa\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "parentheses": ("Frequency (Hz),E' (kPa),E'' (kPa)\n", (HERTZ, STORAGE / 1e3, LOSS / 1e3)),
+    "no blank": ("omega(rad/s),G'(Pa),G''(Pa)\n", (OMEGA, STORAGE, LOSS)),
+    "slash": ("f/Hz,E'/MPa,E''/MPa\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "in": ("f in kHz,E' in GPa,E'' in MPa\n", (HERTZ / 1e3, STORAGE / 1e9, LOSS / 1e6)),
+    "suffixes": ("frequency_hz,storage_modulus_mpa,loss_modulus_kpa\n",
+                 (HERTZ, STORAGE / 1e6, LOSS / 1e3)),
+    "more suffixes": ("omega_rad_s,E_stor_MPa,E_loss_MPa\n", (OMEGA, STORAGE / 1e6, LOSS / 1e6)),
+    "units below": ("f,E_stor,E_loss\nHz,MPa,MPa\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "brackets below": ("f,G',G''\n[Hz],[MPa],[MPa]\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "separators between": ("f,E',E''\n,,\nHz,MPa,MPa\n,,\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "per second": ("Kreisfrequenz [1/s],Speichermodul [Pa],Verlustmodul [Pa]\n",
+                   (OMEGA, STORAGE, LOSS)),
+    "powers": ("ω [s^-1],E' [N/mm^2],E'' [N/mm²]\n", (OMEGA, STORAGE / 1e6, LOSS / 1e6)),
+    "logarithms": ("log10(f [Hz]),log10 E' [Pa],lg(E''/Pa)\n",
+                   (np.log10(HERTZ), np.log10(STORAGE), np.log10(LOSS))),
+    "natural": ("ln(omega [rad/s]),ln(E') (MPa),ln(E'') (MPa)\n",
+                (np.log(OMEGA), np.log(STORAGE / 1e6), np.log(LOSS / 1e6))),
+    "tangent": ("f [Hz],E' [Pa],tan δ\n", (HERTZ, STORAGE, LOSS / STORAGE)),
+    "tangent and loss": ("f [Hz],Loss factor [-],E'' [Pa]\n", (HERTZ, LOSS / STORAGE, LOSS)),
+    "magnitude": ("f [Hz],|G*| [Pa],tan(delta)\n",
+                  (HERTZ, np.hypot(STORAGE, LOSS), LOSS / STORAGE)),
+    "phase": ("f [Hz],Complex modulus [Pa],Phase angle [°]\n",
+              (HERTZ, np.hypot(STORAGE, LOSS), np.degrees(np.arctan2(LOSS, STORAGE)))),
+    "other order": ("Module de perte [MPa],Module de conservation [MPa],Fréquence [Hz]\n",
+                    (LOSS / 1e6, STORAGE / 1e6, HERTZ)),
+    "name and symbol": ("Angular frequency ω [rad/s],Storage modulus E' [Pa],"
+                        "Loss modulus (E'') [Pa]\n",
+                        (OMEGA, STORAGE, LOSS)),
+    "both frequencies": ("f [Hz],omega [rad/s],E' [Pa],E'' [Pa]\n", (HERTZ, OMEGA, STORAGE, LOSS)),
+    "velocity": ("Frequency [Hz],Velocity [rad/s],Storage modulus [Pa],Loss modulus [Pa]\n",
+                 (HERTZ, OMEGA / 100, STORAGE, LOSS)),
+    "repeated": ("f [Hz],E' [MPa],E'' [MPa],f [Hz],E' [MPa]\n",
+                 (HERTZ, STORAGE / 1e6, LOSS / 1e6, HERTZ, STORAGE / 1e6)),
+    "others beside": ("No.,f [Hz],Stress [Pa],Strain [%],Torque [µNm],E' [Pa],E'' [Pa],Status\n",
+                      (OMEGA, HERTZ, OMEGA, OMEGA, OMEGA, STORAGE, LOSS, OMEGA)),
+    "Spanish": ("Frecuencia angular [rad/s],Módulo de almacenamiento [Pa],Módulo de pérdida [Pa]\n",
+                (OMEGA, STORAGE, LOSS)),
+    "Japanese": ("角周波数 [rad/s],貯蔵弾性率 [MPa],損失弾性率 [MPa]\n",
+                 (OMEGA, STORAGE / 1e6, LOSS / 1e6)),
+    "Chinese": ("频率（Hz）,储能模量（MPa）,损耗模量（MPa）\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
+    "typographic": ("f [Hz],E′ [Pa],E″ [Pa]\n", (HERTZ, STORAGE, LOSS)),
+    "quotation mark": ("f [Hz],E' [Pa],E\" [Pa]\n", (HERTZ, STORAGE, LOSS)),
+    "preamble": ("Sample,rubber 12\nDiameter,8.0\nTemperature limit,620 [°C]\n\n"
+                 "f [Hz],E' [Pa],E'' [Pa]\n", (HERTZ, STORAGE, LOSS)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HEADS)
+def test_heads(tmp_path, name):
+    head, columns = HEADS[name]
+    is_the_material(read(tmp_path, table(*columns, head=head)))
+
+
+LANGUAGES = {
+    "en": ("Angular frequency", "Storage modulus", "Loss modulus", "Temperature"),
+    "de": ("Kreisfrequenz", "Speichermodul", "Verlustmodul", "Temperatur"),
+    "fr": ("Fréquence angulaire", "Module de stockage", "Module de perte", "Température"),
+    "es": ("Frecuencia angular", "Módulo de almacenamiento", "Módulo de pérdidas", "Temperatura"),
+    "ja": ("角周波数", "貯蔵弾性率", "損失弾性率", "温度"),
+    "zh": ("角频率", "储能模量", "损耗模量", "温度"),
+}
+ENCODINGS = {"en": "ascii", "de": "cp1252", "fr": "cp1252", "es": "cp1252", "ja": "shift_jis",
+             "zh": "gb18030"}  # fmt: skip
+
+
+@settings(max_examples=150, deadline=None, derandomize=True,
+          suppress_health_check=[HealthCheck.function_scoped_fixture])  # fmt: skip
+@given(
+    language=st.sampled_from(sorted(LANGUAGES)),
+    order=st.permutations(range(4)),
+    style=st.sampled_from(["[]", "()", "below", "[below]", "suffix", "remark"]),
+    mark=st.sampled_from([",", ";", "\t", "blank"]),
+    comma=st.booleans(),
+    encoding=st.sampled_from(["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "own"]),
+    end=st.sampled_from(["\n", "\r\n", "\r"]),
+    units=st.tuples(
+        st.sampled_from(["rad/s", "Hz", "kHz"]),
+        st.sampled_from(["Pa", "kPa", "MPa"]),
+        st.sampled_from(["C", "K"]),
+    ),  # fmt: skip
+    index=st.booleans(),
+    blanks=st.sets(st.integers(0, 9), max_size=3),
+    preamble=st.sampled_from(
+        ["", "Project:{0}pad{0}{0}\n", "Created{0}12.03.2026\nOperator{0}X\n"]
+    ),
+)
+def test_all_combinations(
+    tmp_path, language, order, style, mark, comma, encoding, end, units, index, blanks, preamble
+):
+    """What is written in any way is read as it was meant, or refused."""
+    assume(not (mark == "," and comma) and not (mark == "blank" and (preamble or index)))
+    names = list(LANGUAGES[language])
+    if units[0] != "rad/s":
+        names[0] = {"en": "Frequency", "de": "Frequenz", "fr": "Fréquence", "es": "Frecuencia",
+                    "ja": "周波数", "zh": "频率"}[language]  # fmt: skip
+    if mark == "blank":
+        assume(all(" " not in name for name in names) or style in ("[]", "()"))
+    sizes = {"rad/s": 1, "Hz": 2 * np.pi, "kHz": 2e3 * np.pi, "Pa": 1, "kPa": 1e3, "MPa": 1e6}
+    kelvin = np.full(len(OMEGA), 296.15)
+    values = [OMEGA / sizes[units[0]], STORAGE / sizes[units[1]], LOSS / sizes[units[1]],
+              kelvin - 273.15 * (units[2] == "C")]  # fmt: skip
+    told = [units[0], units[1], units[1], units[2]]
+    names, values, told = ([one[i] for i in order] for one in (names, values, told))
+    sep = "  " if mark == "blank" else mark
+    heads = {
+        "[]": [f"{name} [{unit}]" for name, unit in zip(names, told, strict=True)],
+        "()": [f"{name} ({unit})" for name, unit in zip(names, told, strict=True)],
+        "remark": [f"{name} [{unit}]" for name, unit in zip(names, told, strict=True)],
+        "suffix": [
+            f"{name}_{unit.replace('/', '_').lower()}"
+            for name, unit in zip(names, told, strict=True)
+        ],
+    }.get(style, names)
+    lines = [("# " if style == "remark" else "") + sep.join([""] * index + heads)]
+    if style.endswith("below") or style == "[below]":
+        below = [f"[{unit}]" if "[" in style else unit for unit in told]
+        lines.append(sep.join([""] * index + below))
+    for i, row in enumerate(zip(*values, strict=True)):
+        cells = [f"{x:.10g}".replace(".", "," if comma else ".") for x in row]
+        lines.append(sep.join([str(i + 1)] * index + cells))
+        if i in blanks and mark != "blank":
+            lines.append(mark * 3)
+    text = preamble.format(mark) + "\n".join(lines) + "\n"
+    raw = text.replace("\n", end).encode(ENCODINGS[language] if encoding == "own" else encoding)
+    data = read(tmp_path, raw)
+    is_the_material(data)
+    assert np.allclose(data.temperature, 296.15)
+    assert ("with decimal commas" in data.attrs["taken"]) is comma
+
+
+def test_the_encoding_whose_names_are_known(tmp_path):
+    head = "##Temp./°C;Time/min;f/Hz;E'/MPa;E''/MPa;tan δ\n"
+    text = table(OMEGA * 0 + 25, OMEGA, HERTZ, STORAGE / 1e6, LOSS / 1e6, LOSS / STORAGE,
+                 head=head, mark=";", comma=True)  # fmt: skip
+    for encoding in ("utf-8", "iso8859_7", "utf-16-be"):
+        is_the_material(
+            read(tmp_path, ("#EXPORTTYPE:DATA ALL\n#RANGE: a; b\n" + text).encode(encoding))
+        )
+
+
+def test_first_cell_empty(tmp_path):
+    for mark in ",;\t":
+        head = f"Interval data:{mark}Point No.{mark}Angular Frequency{mark}"
+        head += f"Storage Modulus{mark}Loss Modulus\n"
+        head += f"{mark * 4}\n{mark}[]{mark}[rad/s]{mark}[Pa]{mark}[Pa]\n"
+        rows = [mark.join(["", str(i), *(f"{x:.9g}" for x in row)])
+                for i, row in enumerate(zip(OMEGA, STORAGE, LOSS, strict=True))]  # fmt: skip
+        is_the_material(read(tmp_path, head + "\n".join(rows)))
+
+
+def test_relaxation_with_two_times(tmp_path):
+    head = "Step time\tRun time\tRelaxation modulus G(t)\ns\ts\tMPa\n"
+    data = read(tmp_path, table(OMEGA, OMEGA + 100, STORAGE / 1e6, head=head, mark="\t"))
+    assert data.attrs["kind"] == "relaxation" and data.attrs["shear"] is True
+    assert np.allclose(data.time, OMEGA) and np.allclose(data.relaxation_modulus, STORAGE)
+    only = read(tmp_path, table(OMEGA, STORAGE / 1e6, head="Run time [s],E(t) [MPa]\n"))
+    assert np.allclose(only.time, OMEGA) and only.attrs["shear"] is False
+    both = table(OMEGA, OMEGA / 60, STORAGE, head="t [s],t [min],E [Pa]\n", digits=12)
+    assert np.allclose(read(tmp_path, both).time, OMEGA)
+
+
+def test_shift_factors(tmp_path):
+    for head, value in {
+        "T [C],log10 a_T\n": lambda x: x, "T [C],a_T\n": lambda x: 10**x,
+        "Temperature_C,ln(aT)\n": lambda x: x * np.log(10),
+        "T,log10_shift_factor\nC,-\n": lambda x: x,
+    }.items():  # fmt: skip
+        x = np.array([3.0, 1.0, 0.0, -1.5])
+        data = read(tmp_path, table([0, 10, 20, 30], value(x), head=head))
+        assert data.attrs["kind"] == "shift"
+        assert np.allclose(data.temperature, [273.15, 283.15, 293.15, 303.15])
+        assert np.allclose(np.log10(data.shift_factor), x)
+    refused(tmp_path, table([0, 10], [1, 0], head="T [C],log aT\n"), "expected log10 or ln")
+
+
+# ------------------------------------------------------------------------------- several curves
+
+
+def blocks(head, step="[Step]\nStep name,Frequency sweep ({t}.0 °C)\n", column=False):
+    text = ""
+    for i, t in enumerate((0, 10, 20)):
+        text += step.format(t=t) + head
+        columns = [HERTZ, STORAGE * (3 - i) / 1e6, LOSS * (3 - i) / 1e6]
+        text += table(*([OMEGA * 0 + t] * column), *columns) + "\n"
+    return text
+
+
+@pytest.mark.parametrize("text", [
+    blocks("f,E',E''\nHz,MPa,MPa\n"),
+    blocks("T,f,E',E''\nC,Hz,MPa,MPa\n", "[Step]\nStep name,Sweep\nNumber of points,7\n", True),
+    "f [Hz],E' [MPa],E'' [MPa]\n" + blocks("", "T = {t} °C\n"),
+    "f [Hz],E' [MPa],E'' [MPa]\n" + blocks("", "Temperature: {t} C\n"),
+    "T [C],f [Hz],E' [MPa],E'' [MPa]\n" + blocks("", "", True).replace("\n\n", "\n"),
+])  # fmt: skip
+def test_steps_and_blocks(tmp_path, text):
+    data = read(tmp_path, text)
+    found = curves(data)
+    assert [round(one.attrs["temperature"] - 273.15) for one in found] == [0, 10, 20]
+    for i, one in enumerate(found):
+        assert np.allclose(one.frequency, OMEGA) and np.allclose(
+            one.storage_modulus, STORAGE * (3 - i)
+        )
+
+
+SIDES = {
+    "own frequencies": "20 °C,,,30 °C,,\nf [Hz],E' [MPa],E'' [MPa],f [Hz],E' [MPa],E'' [MPa]\n",
+    "in the heads": "f [Hz] 20 °C,E' [MPa] 20 °C,E'' [MPa] 20 °C,f [Hz] 30 °C,E' [MPa] 30 °C,"
+    "E'' [MPa] 30 °C\n",
+    "common": "f [Hz],E' (MPa) 20C,E'' (MPa) 20C,E' (MPa) 30C,E'' (MPa) 30C\n",
+    "at": "f [Hz],E'@20C [MPa],E''@20C [MPa],E'@30C [MPa],E''@30C [MPa]\n",
+    "numbers above": "T [C],20,20,30,30\nf [Hz],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n",
+}
+
+
+@pytest.mark.parametrize("name", SIDES)
+def test_temperatures_side_by_side(tmp_path, name):
+    columns = [HERTZ, STORAGE / 1e6, LOSS / 1e6, HERTZ, STORAGE / 2e6, LOSS / 2e6]
+    if SIDES[name].splitlines()[-1].count(",") == 4:
+        del columns[3]
+    found = curves(read(tmp_path, table(*columns, head=SIDES[name])))
+    assert [round(one.attrs["temperature"] - 273.15, 6) for one in found] == [20, 30]
+    for one, size in zip(found, (1, 2), strict=True):
+        assert np.allclose(one.frequency, OMEGA) and np.allclose(
+            one.storage_modulus, STORAGE / size
+        )
+
+
+def test_columns_of_different_lengths(tmp_path):
+    text = table(HERTZ, STORAGE, LOSS, HERTZ, STORAGE, LOSS,
+                 head="20 C,,,30 C,,\n"
+                 "f [Hz],E' [Pa],E'' [Pa],f [Hz],E' [Pa],E'' [Pa]\n")  # fmt: skip
+    lines = text.splitlines()
+    lines[-1] = ",".join(lines[-1].split(",")[:3]) + ",,,"
+    first, second = curves(read(tmp_path, "\n".join(lines)))
+    assert (len(first), len(second)) == (7, 6)
+
+
+def test_two_sweeps_that_nothing_tells_apart(tmp_path):
+    text = table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n")
+    data = read(tmp_path, text + table(HERTZ, STORAGE / 2, LOSS / 2))
+    with pytest.raises(vcor.InputError, match="data.csv:9: found a frequency"):
+        curves(data)
+    two = "f [Hz],E' [Pa],E'' [Pa],f [Hz],E' [Pa],E'' [Pa]\n"
+    refused(tmp_path, table(HERTZ, STORAGE, LOSS, HERTZ, STORAGE / 2, LOSS / 2, head=two),
+            "found two columns of storage modulus with different numbers", "--columns")  # fmt: skip
+
+
+def test_a_temperature_by_the_name_of_the_file(tmp_path):
+    (tmp_path / "a.csv").write_text(table(HERTZ, STORAGE, LOSS, head="f [Hz],G' [Pa],G'' [Pa]\n"))
+    with pytest.raises(vcor.UsageError, match="--poisson-ratio"):
+        read_moduli(f"{tmp_path}/a.csv@20C")
+    (one,) = read_moduli(f"{tmp_path}/a.csv@20C", poisson_ratio=0.5)
+    assert one.attrs["temperature"] == 293.15 and np.allclose(one.loss_modulus, 3 * LOSS)
+
+
+# ------------------------------------------------------------------------------ impacts, records
+
+
+@pytest.mark.parametrize(("head", "names", "factors"), [
+    ("Impact velocity (m/s),Rebound velocity (m/s)\n", ("velocity", "rebound_velocity"), (1, 1)),
+    ("v_in [m/s],v_out [m/s]\n", ("velocity", "rebound_velocity"), (1, 1)),
+    ("speed in [km/h],speed out [km/h]\n", ("velocity", "rebound_velocity"), (1 / 3.6, 1 / 3.6)),
+    ("Initial height (cm),Bounce height (cm)\n", ("drop_height", "rebound_height"), (0.01, 0.01)),
+    ("H0 (cm),H1 (cm)\n", ("drop_height", "rebound_height"), (0.01, 0.01)),
+    ("Fallhöhe [mm],Rückprallhöhe [mm]\n", ("drop_height", "rebound_height"), (1e-3, 1e-3)),
+    ("Hauteur de chute (cm),Coefficient de restitution\n", ("drop_height", "cor"), (0.01, 1)),
+    ("落下高さ [cm],反発係数\n", ("drop_height", "cor"), (0.01, 1)),
+    ("v [mm/s],Stoßzahl\n", ("velocity", "cor"), (1e-3, 1)),
+    ("velocity,resilience [%]\n", ("velocity", "resilience"), (1, 0.01)),
+])  # fmt: skip
+def test_names_of_impacts(tmp_path, head, names, factors):
+    data = read(tmp_path, head + "60,40\n50,35\n")
+    assert data.attrs["kind"] == "impacts" and tuple(data) == names
+    assert np.allclose(data, np.array([[60, 40], [50, 35]]) * factors)
+
+
+def test_a_stopwatch(tmp_path):
+    both = read(tmp_path, "Event time (s),Interval (s)\n2.0,0.5\n2.5,0.4\n2.9,0.3\n3.2,0.000000\n")
+    assert list(both) == ["bounce_time"] and np.allclose(both.bounce_time, [0.5, 0.4, 0.3])
+    only = read(tmp_path, "Event time (s)\n2.0\n2.5\n2.9\n3.2\n")
+    assert np.allclose(only.bounce_time, [0.5, 0.4, 0.3])
+
+
+def test_unknown_columns_of_impacts(tmp_path):
+    said = refused(
+        tmp_path, "velocity [m/s],core\n1,0.5\n", "found the column 'core'", "rebound_height"
+    )
+    assert "did you mean 'cor'" in said
+    data = read(tmp_path, "Nr.,velocity [m/s],cor,Remark\n1,2,0.5,late\n2,3,0.4,\n")
+    assert list(data) == ["velocity", "cor"]
+
+
+def test_labview(tmp_path):
+    head = (
+        "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\nX_Columns\tNo\n"
+        "***End_of_Header***\n\n"
+        "Channels\t1\nSamples\t3\nDate\t2026/01/01\nTime\t12:00:00\nY_Unit_Label\tN\nX_Dimension\tTime\n"
+        "X0\t0.0\nDelta_X\t0.001\n***End_of_Header***\nX_Value\tForce\tComment\n"
+    )
+    data = read(tmp_path, head + "\t1.5\n\t2.5\n\t0.5\n", name="a.lvm")
+    assert data.attrs["kind"] == "record" and np.allclose(data.time, [0, 1e-3, 2e-3])
+    assert np.allclose(data.force, [1.5, 2.5, 0.5])
+    text = head.replace("\tNo\n", "\tOne\n") + "0.0\t1\n0.5\t2\n1.0\t1\n"
+    assert np.allclose(read(tmp_path, text, name="a.lvm").time, [0, 0.5, 1.0])
+    text = text.replace("\tForce\t", "\tUntitled\t")
+    refused(tmp_path, text, "'Untitled [N]'", "--columns")
+    found = read(tmp_path, text, {"force": "Untitled"})
+    assert np.allclose(found.force, [1, 2, 1])
+
+
+def test_acceleration(tmp_path):
+    text = '"Time (s)","Acceleration (m/s^2)"\n0,1\n0.1,2\n'
+    data = read(tmp_path, text)
+    assert list(data) == ["time", "acceleration"] and data.attrs["kind"] == "record"
+    assert np.allclose(read(tmp_path, "t [ms],a [g]\n0,1\n1,2\n").acceleration, [9.80665, 19.6133])
+
+
+# ---------------------------------------------------------------------------------- refusals
+
+BAD = {
+    "stress": ("Time [s],Stress [Pa]\n1,5\n2,4\n", [":1:", "'Stress [Pa]'", "--columns"]),
+    "Spannung": ("Zeit [s];Spannung [Pa]\n1;5\n2;4\n", ["'Spannung [Pa]'"]),
+    "bulk": ("time [s],bulk modulus [Pa]\n1,5\n2,4\n", ["'bulk modulus [Pa]'"]),
+    "creep": ("time [s],Creep modulus [Pa]\n1,5\n2,4\n", ["'Creep modulus [Pa]'"]),
+    "compliance": ("f [Hz],J' [1/Pa],J'' [1/Pa]\n1,5,1\n2,4,1\n", ["J'"]),
+    "viscosity": ("f [Hz],Complex viscosity [Pa s]\n1,5\n2,4\n", ["'Complex viscosity"]),
+    "no loss": ("f [Hz],Stress [Pa],E' [Pa]\n1,5,5\n2,6,6\n", ["loss modulus", "E''"]),
+    "no names": ("1,5,1\n2,6,1\n", ["3 columns without names", "--columns"]),
+    "names of places": ("a,b,c\n1,5,1\n2,6,1\n", ["'b'"]),
+    "bare log": ("log t,log E\n1,5\n2,4\n", ["expected log10 or ln"]),
+    "unit of frequency": ("Frequency [1/s],E' [Pa],E'' [Pa]\n1,5,1\n2,6,1\n", ["Hz or rad/s"]),
+    "no unit of frequency": ("frequency,storage,loss\n1,5,1\n2,6,1\n", ["no unit of 'frequency'"]),
+    "Hz of omega": ("omega [Hz],E' [Pa],E'' [Pa]\n1,5,1\n2,6,1\n", ["angular frequency", "rad/s"]),
+    "unit of one": ("t [s],E\n1,5\n2,4\n", ["no unit of 'E'", "--units"]),
+    "unit of temperature": ("f [Hz],T,E' [Pa],E'' [Pa]\n1,23,5,1\n2,23,6,1\n", ["T [C]"]),
+    "capitals": ("t [s],E [MPA]\n1,5\n2,4\n", ["'MPA'", "did you mean MPa?"]),
+    "milli": ("t [s],E [mPa]\n1,5\n2,4\n", ["'mPa'", "did you mean MPa?"]),
+    "wrong unit": ("t [s],E [s]\n1,5\n2,4\n", ["'s' as unit of 'E [s]'"]),
+    "T is no time": ("T [s],E [Pa]\n1,5\n2,4\n", ["no column of the time"]),
+    "text": ("t [s],E [Pa]\n1,5\n2,abc\n", [":3:", "'abc'", "'E [Pa]'"]),
+    "nothing": ("t [s],E [Pa]\n1,5\n2,\n", [":3:", "no number"]),
+    "infinite": ("t [s],E [Pa]\n1,5\n2,1e999\n", [":3:", "1e999"]),
+    "negative": ("t [s],E [Pa]\n1,5\n2,-4\n", [":3:", "-4", "relaxation modulus > 0"]),
+    "time zero": ("t [s],E [Pa]\n0,5\n1,4\n", [":2:", "time > 0"]),
+    "mixed decimals": ("t [s];E [Pa]\n1,5;5,5\n2.5;4\n",
+                       [":3:", "decimal commas and decimal points"]),
+    "thousands": ('t [s],E [Pa]\n1,"1,500"\n2,"1,400"\n', ["thousands"]),
+    "thousands and point": ('t [s],E [Pa]\n1,"1,500.5"\n2,3\n', [":2:", "1,500.5"]),
+    "decimal commas between commas": ("t [s],E [Pa]\n1,5,5\n2,5,4\n", ["3 columns", "2 names"]),
+    "index without a head": ("f [Hz]\tE' [Pa]\tE'' [Pa]\n1\t1\t5\t1\n2\t2\t6\t1\n",
+                             ["4 columns", "3 names"]),
+    "text between": ("t [s],E [Pa]\n1,5\n2,4\nsecond,\n3,2\n4,1\n", [":5:", "second"]),
+    "a table below": ("t [s],E [Pa]\n1,5\n2,4\nsecond sample\n1,2\n2,1\n",
+                      [":5:", "second sample"]),
+    "shear and tensile": ("f [Hz],E' [Pa],G'' [Pa]\n1,5,1\n2,6,1\n", ["shear and tensile"]),
+    "contradiction": ("f [Hz],E' [Pa],E'' [Pa],tan delta\n1,5,1,2\n2,6,1,2\n",
+                      ["tan delta that contradicts"]),
+    "two frequencies": ("f [Hz],omega [rad/s],E' [Pa],E'' [Pa]\n1,2,5,1\n2,3,6,1\n",
+                        ["two columns of frequency"]),
+    "control character": ("t [s],E [Pa]\n1,5\n2,\x004\n", [":3:", "control character"]),
+    "empty": ("", ["no numbers"]),
+    "blank": ("\n \n", ["no numbers"]),
+    "head only": ("t [s],E [Pa]\n", ["no numbers"]),
+    "moduli of both kinds": ("t [s],f [Hz],E(t) [Pa],E' [Pa],E'' [Pa]\n1,1,5,5,1\n2,2,4,6,1\n",
+                             ["against time"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_refused(tmp_path, name):
+    text, said = BAD[name]
+    refused(tmp_path, text, *said)
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(vcor.FileError, match="found a folder"):
+        read_data(tmp_path)
+    with pytest.raises(vcor.FileError, match="No such file"):
+        read_data(tmp_path / "none.csv")
+    refused(tmp_path, b"PK\x03\x04rest", "no spreadsheet")
+    refused(tmp_path, b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1rest", ".xlsx")
+
+
+def test_files_have_a_bound(tmp_path, monkeypatch):
+    monkeypatch.setattr(grid, "MOST_BYTES", 100)
+    refused(tmp_path, "t [s],E [Pa]\n" + "1,5\n" * 30, "smaller file")
+
+
+@settings(max_examples=300, deadline=None, derandomize=True,
+          suppress_health_check=[HealthCheck.function_scoped_fixture])  # fmt: skip
+@given(
+    st.binary(max_size=200)
+    | st.text(alphabet="tfE'GvT,;\t \n[]()#0123456789.-eHzPaMC\"", max_size=120)
+)
+def test_whatever_a_file_holds(tmp_path, content):
+    """A table or a line that says why not; nothing else."""
+    try:
+        data = read(tmp_path, content)
+    except vcor.Error as error:
+        assert "\n" not in str(error)
+    else:
+        assert len(data) and data.attrs["kind"]
+
+
+# ---------------------------------------------------------------------------------- options
+
+
+def test_columns_that_the_user_names(tmp_path):
+    text = table(OMEGA, LOSS, STORAGE, head="Kolumna (rad/s),B (Pa),A (Pa)\n")
+    refused(tmp_path, text, "--columns")
+    choice = {"frequency": "Kolumna", "storage": "A (Pa)", "E''": 2}
+    is_the_material(read(tmp_path, text, choice))
+    options = columns_option(["frequency=Kolumna (rad/s)", "storage=A,loss=B"])
+    is_the_material(read(tmp_path, text, options))
+    bare = table(OMEGA, STORAGE, LOSS)
+    is_the_material(read(tmp_path, bare, ["omega", "storage", "loss"]))
+    is_the_material(read(tmp_path, table(HERTZ, STORAGE / 1e6, LOSS / 1e6),
+                         columns_option(["frequency,storage,loss"]), "Hz,MPa"))  # fmt: skip
+    skipped = read(tmp_path, table(OMEGA, OMEGA, STORAGE, LOSS), ["", "omega", "storage", "loss"])
+    is_the_material(skipped)
+    for wrong in ({"frequency": "C"}, {"sorage": "A"}, ["omega"]):
+        with pytest.raises(vcor.UsageError):
+            read(tmp_path, bare if isinstance(wrong, list) else text, wrong)
+    two = table(OMEGA, STORAGE, LOSS, STORAGE / 2, head="omega,E',E'',E'\n")
+    is_the_material(read(tmp_path, two, {"storage": 2}))
+
+
+def test_units_that_the_user_names(tmp_path):
+    text = table(HERTZ, STORAGE / 1e6, LOSS / 1e6, head="frequency,storage,loss\n")
+    is_the_material(read(tmp_path, text, None, "Hz,MPa"))
+    is_the_material(
+        read(tmp_path, text, units={"frequency": "Hz", "storage": "MPa", "loss": "MPa"})
+    )
+    same = table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n")
+    is_the_material(read(tmp_path, same, units=["Hz", "Pa"]))
+    for units in ("rad/s", "Hz,MPa", "bananas"):
+        with pytest.raises(vcor.UsageError):
+            read(tmp_path, same, units=units)
+
+
+def test_errors_of_columns(tmp_path):
+    head = "f [Hz],E_stor [MPa],E_stor_sigma [MPa],E_loss [MPa]\n"
+    data = read(tmp_path, table(HERTZ, STORAGE / 1e6, STORAGE / 1e8, LOSS / 1e6, head=head))
+    assert np.allclose(data.storage_modulus_sigma, STORAGE / 100)
+
+
+def test_spreadsheets(tmp_path):
+    path = tmp_path / "data.xlsx"
+    frame = pd.DataFrame({"f [Hz]": HERTZ, "E' [MPa]": STORAGE / 1e6, "E'' [MPa]": LOSS / 1e6})
+    frame.to_excel(path, index=False, startrow=3, sheet_name="Sweep")
+    is_the_material(read_data(path))
+    with pd.ExcelWriter(path) as book:
+        pd.DataFrame({"Device": ["DMA"], "Serial": [12]}).to_excel(book, sheet_name="Info")
+        for t in (20, 30):
+            frame.assign(**{"Temperature [°C]": t}).to_excel(book, sheet_name=f"{t} C", index=False)
+    assert [round(one.attrs["temperature"] - 273.15) for one in curves(read_data(path))] == [20, 30]
+
+
+def test_standard_input(tmp_path, monkeypatch):
+    text = table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n")
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+    data = read_data("-")
+    is_the_material(data)
+    assert data.attrs["path"] == "stdin"
+
+
+def test_everything_taken_is_in_one_line(tmp_path):
+    text = table(HERTZ, STORAGE, LOSS, OMEGA, head="f [Hz],E' [Pa],E'' [Pa],Torque [µNm]\n")
+    assert (
+        read(tmp_path, text)
+        .attrs["taken"]
+        .endswith(
+            "data.csv: 7 points: frequency from 'f [Hz]', storage_modulus from 'E' [Pa]', "
+            "loss_modulus from 'E'' [Pa]'; not taken: Torque [µNm]"
+        )
+    )
