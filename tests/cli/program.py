@@ -41,6 +41,8 @@ NAMES = [
     "contact_radius",
     "contact_ratio",
     "thickness_ratio",
+    "layer_ratio",
+    "layer_stiffening",
     "plate_wave_number",
     "needed_extent",
     "deflection_ratio",

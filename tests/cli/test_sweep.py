@@ -436,7 +436,7 @@ def test_points_out_of_range(vcor):
         assert (row["steps"] == "0") == bad
         # not dropped, no bending that is left out, no footprint, and ive states no such errors
         absent = {"rebound_height", "bending_loss", "footprint_effect"}
-        absent |= {"contact_time_error", "max_force_error"}
+        absent |= {"contact_time_error", "max_force_error", "layer_ratio", "layer_stiffening"}
         for name in set(NAMES) - WHOLE - absent:
             assert math.isnan(float(row[name])) == bad, name
     # grouped by reason, with the first point of each

@@ -25,6 +25,8 @@ SUMMARY = {
     "contact_radius": "m",
     "contact_ratio": "1",
     "thickness_ratio": "1",
+    "layer_ratio": "1",
+    "layer_stiffening": "1",
     "plate_wave_number": "1",
     "needed_extent": "m",
     "deflection_ratio": "1",

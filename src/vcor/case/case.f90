@@ -521,26 +521,32 @@ contains
          end if
       end associate
       call note_change(self, address, entry%given)
-      if (address == self%address('contact', 'mechanics')) call choose_mechanics(self, entry%text)
+      if (address == self%address('contact', 'mechanics') &
+          .or. address == self%address('plate', 'base')) call choose_mechanics(self)
    end subroutine set_entry
 
-   !> Set the keys of the mechanics that the user has not given, according to `mechanics`
-   pure subroutine choose_mechanics(self, mechanics)
+   !> Set the keys of the mechanics that the user has not given, according to `mechanics` and `base`
+   pure subroutine choose_mechanics(self)
       type(case_t), intent(inout) :: self
-      !> `paper`, the defaults of the keys, or `exact`
-      character(len=*), intent(in) :: mechanics
 
       character(len=*), parameter :: groups_of(3) = [character(len=7) :: 'contact', 'contact', &
          'plate'], keys(3) = [character(len=5) :: 'law', 'pair', 'waves'], &
          exact(3) = [character(len=8) :: 'receding', 'series', 'body']
+      character(len=:), allocatable :: mechanics, base
       type(address_t) :: address
       integer :: i
 
+      call self%get('contact', 'mechanics', mechanics)
+      call self%get('plate', 'base', base)
       do i = 1, size(keys)
          address = self%address(trim(groups_of(i)), trim(keys(i)))
          if (self%given(trim(groups_of(i)), trim(keys(i)))) cycle
          call self%unset(address)
-         if (mechanics == 'exact') call self%set(address, trim(exact(i)), given=.false.)
+         if (mechanics == 'exact') then
+            call self%set(address, trim(exact(i)), given=.false.)
+         else if (base /= 'free' .and. keys(i) == 'waves') then
+            call self%set(address, 'none', given=.false.)
+         end if
       end do
    end subroutine choose_mechanics
 

@@ -115,12 +115,12 @@ module vcor_case_catalogue
          not_negative, default="0.0"), &
       !
       key_t("sphere", "shape", text_key, "Shape of the body", &
-         choices="sphere cone punch power", default="sphere"), &
-      key_t("sphere", "radius", real_key, "Radius", "m", positive, models="sphere", &
+         choices="sphere true_sphere cone punch power", default="sphere"), &
+      key_t("sphere", "radius", real_key, "Radius", "m", positive, models="sphere true_sphere", &
          required=.true.), &
       key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
       key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
-         positive, models="sphere"), &
+         positive, models="sphere true_sphere"), &
       key_t("sphere", "mass", real_key, "Mass", "kg", positive, models="cone punch power", &
          required=.true.), &
       key_t("sphere", "half_angle", real_key, "Angle between the axis of a cone and its side", &
@@ -134,8 +134,13 @@ module vcor_case_catalogue
       !
       key_t("plate", "half_thickness", real_key, &
          "Half the thickness; not needed without waves; if omitted with 'body': a half space", &
-         "m", positive), &
+         "m", positive, instead="thickness"), &
+      key_t("plate", "thickness", real_key, "Thickness, instead of half_thickness", "m", &
+         positive), &
       key_t("plate", "material", text_key, "Name of its material", required=.true.), &
+      key_t("plate", "base", text_key, &
+         "What is below: nothing, or a rigid floor to which the layer is bonded or on which it " &
+         //"slides", choices="free bonded sliding", default="free"), &
       key_t("plate", "waves", text_key, "Model of the waves in the plate", &
          choices="none constant relaxing frozen hereditary body", default="relaxing"), &
       key_t("plate", "footprint", real_key, &

@@ -23,12 +23,14 @@ module vcor_case_problem
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
-   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law, profile_factor, &
       punch_factor, sphere_factor
+   use vcor_impact_layer_law, only : layer_t, lay, profile_t
    use vcor_impact_plate, only : new_plate, waves_body, waves_constant, waves_frozen, &
       waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_response, only : base_bonded, base_free, base_sliding
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : pi, standard_gravity, wp
@@ -65,7 +67,7 @@ module vcor_case_problem
    !> Addresses of the numbers from which an impact is made
    type :: numbers_t
       type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
-      type(address_t) :: half_thickness, footprint, half_angle, punch_radius
+      type(address_t) :: half_thickness, thickness, footprint, half_angle, punch_radius
       type(address_t) :: profile_coefficient, profile_power
       type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
@@ -88,7 +90,9 @@ module vcor_case_problem
       !> Addresses of the numbers
       type(numbers_t), private :: at
       !> Shape of the striking body, as named in the case
-      character(len=6), private :: shape = 'sphere'
+      character(len=11), private :: shape = 'sphere'
+      !> One of base_free, base_bonded and base_sliding
+      integer, private :: base = base_free
       !> One of the `waves_*` constants
       integer, private :: waves = waves_relaxing
       !> One of the `pair_*` constants
@@ -117,6 +121,9 @@ contains
          'relaxing', 'frozen', 'hereditary', 'body']
       integer, parameter :: waves(*) = [waves_none, waves_constant, waves_relaxing, waves_frozen, &
          waves_hereditary, waves_body]
+      character(len=*), parameter :: base_names(*) = [character(len=7) :: 'free', 'bonded', &
+         'sliding']
+      integer, parameter :: bases(*) = [base_free, base_bonded, base_sliding]
       character(len=:), allocatable :: text
       integer :: order
 
@@ -136,6 +143,7 @@ contains
       self%at%profile_power = case%address('sphere', 'profile_power')
       self%at%surface_radius = case%address('plate', 'surface_radius')
       self%at%half_thickness = case%address('plate', 'half_thickness')
+      self%at%thickness = case%address('plate', 'thickness')
       self%at%extent = case%address('plate', 'extent')
       self%at%footprint = case%address('plate', 'footprint')
       self%at%time_step = case%address('solver', 'time_step')
@@ -145,6 +153,8 @@ contains
 
       call case%get('plate', 'waves', text)
       self%waves = waves(findloc(wave_names == text, .true., dim=1))
+      call case%get('plate', 'base', text)
+      self%base = bases(findloc(base_names == text, .true., dim=1))
       call case%get('sphere', 'shape', text)
       self%shape = text
       call case%get('contact', 'law', text)
@@ -393,7 +403,7 @@ contains
       call update_body(self%plate, case, error)
       if (allocated(error)) return
       latest = max(self%sphere%made_at, self%plate%made_at, &
-         case%latest_change([self%at%half_thickness]))
+         case%latest_change([self%at%half_thickness, self%at%thickness]))
       if (self%contact_made_at /= latest) then
          self%contact_made_at = never
          call build_contact(self, case, error)
@@ -486,7 +496,11 @@ contains
 
       self%surroundings%radius = case%number(self%at%radius)
       self%surroundings%is_sphere = case%number(self%at%surface_radius) > 0.0_wp
-      self%surroundings%thickness = 2.0_wp*case%number(self%at%half_thickness)
+      self%surroundings%thickness = none
+      if (half_thickness(self, case) > 0.0_wp) &
+         self%surroundings%thickness = 2.0_wp*half_thickness(self, case)
+      self%surroundings%on_base = self%base /= base_free .and. .not. self%plate%material%rigid
+      self%surroundings%is_true = self%shape == 'true_sphere'
       self%surroundings%is_layer = self%impact%plate%layered()
       self%surroundings%extent = case%number(self%at%extent)
       self%surroundings%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
@@ -512,7 +526,7 @@ contains
       call new_contact_modulus(self%impact%modulus, self%sphere%material, self%plate%material, &
          self%sphere%data%deforms_as(self%plate%data), error, self%pair)
       if (.not. allocated(error)) call new_plate(self%impact%plate, self%plate%material, &
-         number_or_zero(case, self%at%half_thickness), self%waves, error)
+         half_thickness(self, case), self%waves, error)
       if (.not. allocated(error)) return
       if (.not. allocated(error%about)) return
       if (error%about == 'density') error%item = self%plate%address%item
@@ -528,15 +542,19 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(contact_law_t) :: law
+      type(layer_t) :: layer
+      type(profile_t) :: profile
       real(wp) :: exponent, surface_radius
 
       surface_radius = case%number(self%at%surface_radius)
       factor = 0.0_wp
       exponent = law%start_exponent
-      if (self%shape /= 'sphere' .and. abs(surface_radius) > 0.0_wp) then
-         call raise(error, error_input, 'only a sphere meets a curved surface', &
-            about='surface_radius shape')
-         return
+      if (abs(surface_radius) > 0.0_wp) then
+         if (self%shape /= 'sphere') call raise(error, error_input, "only shape = 'sphere' meets " &
+            //'a curved surface', about='surface_radius shape')
+         if (self%base /= base_free) call raise(error, error_input, 'a layer on a base is flat', &
+            about='surface_radius base')
+         if (allocated(error)) return
       end if
       select case (self%shape)
       case ('cone')
@@ -554,8 +572,55 @@ contains
       end select
       if (.not. allocated(error)) &
          call new_contact_law(law, exponent, self%impact%law%receding, error)
-      if (.not. allocated(error)) self%impact%law = law
+      if (allocated(error)) return
+      if (abs(law%start_exponent - self%impact%law%start_exponent) > 0.0_wp) self%impact%law = law
+      profile%power = 0.0_wp
+      if (exponent > 1.0_wp) profile%power = 1.0_wp/(exponent - 1.0_wp)
+      if (self%shape == 'true_sphere') profile%radius = case%number(self%at%radius)
+      call describe_layer(self, case, layer, error)
+      if (.not. allocated(error)) call lay(self%impact%law, layer, profile, factor, error)
    end subroutine set_shape
+
+   !> Layer on a base, for the contact law: a half space if there is none, or its waves are solved
+   subroutine describe_layer(self, case, layer, error)
+      !> The problem, its materials built
+      type(problem_t), intent(in) :: self
+      type(case_t), intent(in) :: case
+      type(layer_t), intent(out) :: layer
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: sphere, plate
+
+      if (self%base == base_free .or. self%plate%material%rigid) return
+      layer%thickness = 2.0_wp*half_thickness(self, case)
+      if (.not. layer%thickness > 0.0_wp) then
+         call raise(error, error_input, 'a layer on a base needs its thickness [m], or ' &
+            //'half_thickness', about='base thickness')
+      else if (all(self%waves /= [waves_none, waves_body])) then
+         call raise(error, error_input, 'the waves of a thin plate are those of a free one, ' &
+            //"expected waves = 'none' or 'body' with a base", about='waves base')
+      else if (self%settings%scheme /= 'product') then
+         call raise(error, error_input, 'adams_bashforth is the scheme of the paper, for a free ' &
+            //"plate; use method = 'ive', or 'direct' with scheme = 'product'", &
+            about='scheme base')
+      end if
+      if (allocated(error) .or. self%waves == waves_body) return
+      layer%base = self%base
+      layer%poisson_ratio = self%plate%material%poisson_ratio()
+      if (self%sphere%material%rigid) return
+      if (self%sphere%data%deforms_as(self%plate%data)) then
+         layer%share = 0.5_wp
+      else if (self%sphere%material%elastic() .and. self%plate%material%elastic()) then
+         sphere = self%sphere%material%glassy()*self%sphere%material%plane_strain_factor()
+         plate = self%plate%material%glassy()*self%plate%material%plane_strain_factor()
+         layer%share = sphere/(sphere + plate)
+      else
+         call raise(error, error_input, "the layer's share in the compliance must not change " &
+            //'with time: expected one rigid body, two elastic ones or two of one material, ' &
+            //"or waves = 'body'", about='base material')
+      end if
+   end subroutine describe_layer
 
    !> Update settings and solver
    subroutine update_solver(self, case, error)
@@ -583,6 +648,16 @@ contains
          if (.not. allocated(error)) self%solver_made_at = latest
       end if
    end subroutine update_solver
+
+   !> Half the thickness of the plate [m]; 0 if there is none
+   pure function half_thickness(self, case) result(half)
+      type(problem_t), intent(in) :: self
+      type(case_t), intent(in) :: case
+      real(wp) :: half
+
+      half = number_or_zero(case, self%at%half_thickness)
+      if (.not. half > 0.0_wp) half = 0.5_wp*number_or_zero(case, self%at%thickness)
+   end function half_thickness
 
    !> Number at an address; 0 if there is none
    pure function number_or_zero(case, address) result(number)

@@ -126,7 +126,7 @@ contains
                reason = "adams_bashforth marches the paper's wave equation, without a weight"
          case ('plate.extent')
             reason = why_plate_rests(case)
-         case ('plate.waves', 'plate.half_thickness')
+         case ('plate.waves', 'plate.half_thickness', 'plate.thickness', 'plate.base')
             if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
          case ('plate.footprint')
             call case%get('plate', 'waves', method)

@@ -13,9 +13,15 @@
 !> an increment of s acts like a flat punch of radius a. Units are given for n = 3/2, such as
 !> [m^1.5] for u and [N/m^1.5] for k. Beyond the end of an elastic contact s and the force are
 !> negative, so u is continued as an odd function, u(s) = s |s|^(n-1).
+!>
+!> A layer on a rigid base, and the sphere itself in place of its paraboloid, have a table of u in
+!> place of the power (`vcor_impact_layer_law`); K remains that of the half space and of Hertz, so
+!> that u ~ s^n as s -> 0. It holds dF/ds = 2 E' S with the punch stiffness S in place of a, and the
+!> force follows from u(s) as on the half space, Ting's rule included.
 module vcor_impact_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_law_table, only : law_table_t
    use vcor_kinds, only : pi, wp
    implicit none
    private
@@ -25,6 +31,9 @@ module vcor_impact_law
 
    !> Exponent of Hertzian contact of curved surfaces [-]
    real(wp), parameter :: hertz = 1.5_wp
+   !> Most iterations of Newton's method, and relative change after which none is left
+   integer, parameter :: most_iterations = 60
+   real(wp), parameter :: close = 1.0e-9_wp
 
    !> A contact law, by default Hertz's with the hereditary integral over all the past, which is
    !> exact while the contact grows; immutable once built
@@ -40,6 +49,15 @@ module vcor_impact_law
       !> while the contact shrinks, too (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
       !> doi:10.1115/1.3625192)
       logical :: receding = .false.
+      !> Ratio of u to s^n; unallocated: 1
+      type(law_table_t), allocatable, private :: table
+      !> Numbers that the table is for
+      real(wp), private :: about(6) = 0.0_wp
+      !> Unit of length of the table [m], and half-space contact radius in it over s^(n-1)
+      !> [m^(1-n)]
+      real(wp), private :: length = 0.0_wp, scale = 0.0_wp
+      !> Radius of a true sphere [m]; 0: another body, the sphere as a paraboloid
+      real(wp), private :: sphere = 0.0_wp
    contains
       procedure, non_overridable :: u
       procedure, non_overridable :: slope
@@ -50,6 +68,11 @@ module vcor_impact_law
       procedure, non_overridable :: profile
       procedure, non_overridable :: solve
       procedure, non_overridable :: time_scale
+      procedure, non_overridable :: is_about
+      procedure, non_overridable :: adopt
+      procedure, non_overridable :: resize
+      procedure, non_overridable :: stiffening
+      procedure, non_overridable :: exceeds
    end type contact_law_t
 
 contains
@@ -148,7 +171,43 @@ contains
       factor = 2.0_wp*power/(power + 1.0_wp)*exp(-(log(coefficient) + log_kappa)/power)
    end function profile_factor
 
-   !> u(s) = s |s|^(n-1)
+   !> Whether the law has a table for given numbers
+   pure function is_about(self, about)
+      class(contact_law_t), intent(in) :: self
+      !> The numbers
+      real(wp), intent(in) :: about(6)
+      logical :: is_about
+
+      is_about = allocated(self%table) .and. .not. any(abs(about - self%about) > 0.0_wp)
+   end function is_about
+
+   !> Take a table; `resize` sets its unit
+   pure subroutine adopt(self, table, about)
+      class(contact_law_t), intent(inout) :: self
+      type(law_table_t), intent(in) :: table
+      !> Numbers that it is for
+      real(wp), intent(in) :: about(6)
+
+      self%table = table
+      self%about = about
+   end subroutine adopt
+
+   !> Set the size of what the table describes
+   pure subroutine resize(self, factor, length, sphere)
+      class(contact_law_t), intent(inout) :: self
+      !> Factor K of the shape [m^(2-n)]
+      real(wp), intent(in) :: factor
+      !> Unit of length of the table [m]
+      real(wp), intent(in) :: length
+      !> Radius of a true sphere [m]; 0: another body
+      real(wp), intent(in) :: sphere
+
+      self%length = length
+      self%scale = 0.5_wp*factor*self%start_exponent/length
+      self%sphere = sphere
+   end subroutine resize
+
+   !> u(s), odd
    elemental function u(self, s)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
@@ -159,7 +218,7 @@ contains
       u = s*self%secant(s)
    end function u
 
-   !> du/ds = n |s|^(n-1)
+   !> du/ds, n |s|^(n-1) for a power
    elemental function slope(self, s)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
@@ -167,10 +226,13 @@ contains
       !> Slope [m^0.5], >= 0
       real(wp) :: slope
 
-      slope = self%start_exponent*self%secant(s)
+      real(wp) :: value(1), at(1)
+
+      call self%evaluate(1, [s], value, at)
+      slope = at(1)
    end function slope
 
-   !> u/s = |s|^(n-1); for Hertz a square root, which costs a tenth of a power
+   !> u/s, |s|^(n-1) for a power
    elemental function secant(self, s)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
@@ -178,14 +240,14 @@ contains
       !> u/s [m^0.5], >= 0
       real(wp) :: secant
 
-      if (abs(self%start_exponent - hertz) > 0.0_wp) then
-         secant = abs(s)**(self%start_exponent - 1.0_wp)
-      else
-         secant = sqrt(abs(s))
-      end if
+      real(wp) :: value(1), at(1)
+
+      call self%evaluate(1, [s], value, at)
+      secant = value(1)
    end function secant
 
-   !> u/s and du/ds at many indentations, for inner loops: u = s (u/s)
+   !> u/s and du/ds at many indentations, for inner loops: u = s (u/s). For Hertz the power is a
+   !> square root, which costs a tenth of it
    pure subroutine evaluate(self, n, s, secant, slope)
       class(contact_law_t), intent(in) :: self
       !> Number of indentations
@@ -197,26 +259,47 @@ contains
       !> du/ds [m^0.5], >= 0
       real(wp), intent(out) :: slope(n)
 
+      real(wp) :: ratio, rise
+      integer :: i
+
       if (abs(self%start_exponent - hertz) > 0.0_wp) then
          secant = abs(s)**(self%start_exponent - 1.0_wp)
       else
          secant = sqrt(abs(s))
       end if
       slope = self%start_exponent*secant
+      if (.not. allocated(self%table)) return
+      do i = 1, n
+         call self%table%stiffening(self%scale*secant(i), ratio, rise)
+         slope(i) = slope(i)*ratio + (self%start_exponent - 1.0_wp)*secant(i)*rise
+         secant(i) = secant(i)*ratio
+      end do
    end subroutine evaluate
 
    !> Indentation at which u has a given value
-   pure function inverse(self, u) result(s)
+   elemental function inverse(self, u) result(s)
       class(contact_law_t), intent(in) :: self
       !> u [m^1.5], >= 0
       real(wp), intent(in) :: u
       !> Indentation [m]
       real(wp) :: s
 
+      real(wp) :: secant(1), slope(1), ratio
+      integer :: iteration
+
       s = u**(1.0_wp/self%start_exponent)
+      if (.not. (allocated(self%table) .and. s > 0.0_wp)) return
+      ! Newton's method for the logarithms, in which u is nearly a straight line
+      do iteration = 1, most_iterations
+         call self%evaluate(1, [s], secant, slope)
+         ratio = u/(s*secant(1))
+         s = s*ratio**(secant(1)/slope(1))
+         if (abs(ratio - 1.0_wp) <= close) exit
+      end do
    end function inverse
 
-   !> Contact radius a = K u'(s)/2: an increment of s acts like a flat punch of this radius
+   !> Contact radius, for a power a = K u'(s)/2: an increment of s acts like a flat punch of this
+   !> radius
    elemental function radius(self, factor, s)
       class(contact_law_t), intent(in) :: self
       !> Factor K of the shape [m^(2-n)]
@@ -226,11 +309,56 @@ contains
       !> Contact radius [m]
       real(wp) :: radius
 
-      radius = 0.5_wp*factor*self%slope(s)
+      real(wp) :: x
+
+      if (allocated(self%table)) then
+         x = self%scale*abs(s)**(self%start_exponent - 1.0_wp)
+         radius = self%length*x*self%table%widening(x)
+      else
+         radius = 0.5_wp*factor*self%slope(s)
+      end if
    end function radius
 
+   !> Force over that on a half space at the same indentation
+   pure function stiffening(self, s) result(ratio)
+      class(contact_law_t), intent(in) :: self
+      !> Indentation [m], > 0
+      real(wp), intent(in) :: s
+      !> Ratio [-]
+      real(wp) :: ratio
+
+      real(wp) :: rise, x
+      integer :: iteration
+
+      ratio = 1.0_wp
+      if (.not. allocated(self%table)) return
+      call self%table%stiffening(self%scale*s**(self%start_exponent - 1.0_wp), ratio, rise)
+      if (.not. self%sphere > 0.0_wp) return
+      ! on a half space s = a x and F/E' = (R^2 + a^2) x - R a with x = atanh(a/R)
+      x = sqrt(s/self%sphere)
+      do iteration = 1, most_iterations
+         rise = (self%sphere*x*tanh(x) - s)/(self%sphere*(tanh(x) + x/cosh(x)**2))
+         x = x - rise
+         if (abs(rise) <= close*x) exit
+      end do
+      ratio = ratio*4.0_wp/3.0_wp*(s/self%sphere)**hertz/((1.0_wp + tanh(x)**2)*x - tanh(x))
+   end function stiffening
+
+   !> Whether an indentation is larger than the law is known for
+   elemental function exceeds(self, s)
+      class(contact_law_t), intent(in) :: self
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      logical :: exceeds
+
+      exceeds = .false.
+      if (allocated(self%table)) &
+         exceeds = self%scale*abs(s)**(self%start_exponent - 1.0_wp) > self%table%reach
+   end function exceeds
+
    !> Profile h(x) of the body in the method of dimensionality reduction: it touches the half space
-   !> up to x at the indentation h(x), x^2/R for a sphere. Flat for a punch, whose radius is K/2
+   !> up to x at the indentation h(x), x^2/R for a sphere. Flat for a punch, whose radius is K/2. A
+   !> true sphere has none beyond its radius
    elemental function profile(self, factor, x) result(h)
       class(contact_law_t), intent(in) :: self
       !> Factor K of the shape [m^(2-n)]
@@ -241,8 +369,13 @@ contains
       real(wp) :: h
 
       h = 0.0_wp
-      if (self%start_exponent > 1.0_wp) h = (2.0_wp*x/(self%start_exponent*factor)) &
-         **(1.0_wp/(self%start_exponent - 1.0_wp))
+      if (self%sphere > 0.0_wp) then
+         h = huge(1.0_wp)
+         if (x < self%sphere) h = x*atanh(x/self%sphere)
+      else if (self%start_exponent > 1.0_wp) then
+         h = (2.0_wp*x/(self%start_exponent*factor)) &
+            **(1.0_wp/(self%start_exponent - 1.0_wp))
+      end if
    end function profile
 
    !> Solve s + c u(s) + d u(s)^2 = r by Newton's method for y = sqrt(|s|), which is u/s for Hertz,
@@ -261,7 +394,7 @@ contains
       real(wp), intent(out) :: s
 
       real(wp), parameter :: least_guess = 1.0e-3_wp
-      real(wp) :: e, y, u, correction, secant
+      real(wp) :: e, y, u, correction, secant(1), slope(1)
       integer :: iteration
 
       s = 0.0_wp
@@ -271,21 +404,26 @@ contains
       y = sqrt(abs(r))
       ! from a guess too close to zero the first step would overflow
       if (abs(guess) > 0.0_wp) y = min(y, max(sqrt(abs(guess)), least_guess*y))
-      do iteration = 1, 60
-         secant = y
-         if (abs(self%start_exponent - hertz) > 0.0_wp) secant = y**(2.0_wp*self%start_exponent - 2.0_wp)
+      do iteration = 1, most_iterations
          s = y*y
-         u = s*secant
+         if (allocated(self%table) .or. abs(self%start_exponent - hertz) > 0.0_wp) then
+            call self%evaluate(1, [s], secant, slope)
+         else
+            secant = y
+            slope = hertz*y
+         end if
+         u = s*secant(1)
          correction = ((s - abs(r)) + u*(c + e*u)) &
-            /(2.0_wp*(y + self%start_exponent*secant*y*(c + 2.0_wp*e*u)))
+            /(2.0_wp*y*(1.0_wp + slope(1)*(c + 2.0_wp*e*u)))
          y = y - correction
          ! the remaining error is about the square of the correction
-         if (abs(correction) <= 1.0e-9_wp*y) exit
+         if (abs(correction) <= close*y) exit
       end do
       s = sign(y*y, r)
    end subroutine solve
 
-   !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of an impact on an elastic contact, F = k u
+   !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of an impact on an elastic contact, F = k u. With a
+   !> table it is that of the power by which u grows at the largest indentation
    pure function time_scale(self, mass, firmness, velocity) result(time)
       class(contact_law_t), intent(in) :: self
       !> Mass [kg], > 0
@@ -297,7 +435,22 @@ contains
       !> Time scale [s]
       real(wp) :: time
 
-      time = (mass/(firmness*self%secant(velocity)))**(1.0_wp/(self%start_exponent + 1.0_wp))
+      real(wp) :: s, secant(1), slope(1), ratio
+      integer :: iteration
+
+      time = (mass/(firmness*velocity**(self%start_exponent - 1.0_wp))) &
+         **(1.0_wp/(self%start_exponent + 1.0_wp))
+      if (.not. allocated(self%table)) return
+      ! the energy m v0^2/2 = k int u ds, and int u ds of this power
+      s = self%depth*velocity*time
+      do iteration = 1, most_iterations
+         call self%evaluate(1, [s], secant, slope)
+         ratio = 0.5_wp*mass*velocity**2*(1.0_wp + slope(1)/secant(1)) &
+            /(firmness*s*s*secant(1))
+         s = s*ratio**(1.0_wp/(1.0_wp + slope(1)/secant(1)))
+         if (abs(ratio - 1.0_wp) <= close) exit
+      end do
+      time = s/(self%depth*velocity)
    end function time_scale
 
 end module vcor_impact_law

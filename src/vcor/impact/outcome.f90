@@ -85,6 +85,10 @@ module vcor_impact_outcome
       real(wp) :: sphere_ratio = none
       !> Contact radius over thickness of the plate, times the plate's share of the compliance [-]
       real(wp) :: thickness_ratio = none
+      !> Contact radius over the thickness of a layer on a base [-]
+      real(wp) :: layer_ratio = none
+      !> Force over that on a half space at the largest indentation of a layer on a base [-]
+      real(wp) :: layer_stiffening = none
       !> Thickness times the wavenumber of bending waves at the frequency pi/t0 [-]
       real(wp) :: plate_wave_number = none
       !> Distance of the nearest edge from which this wave returns at t0 [m]

@@ -44,8 +44,8 @@ module vcor_impact_validity
       ! Hertz' force against Sneddon 1965, doi:10.1016/0020-7225(65)90019-4, for a rigid sphere: 1.6
       ! % too high at 0.4, 6.9 % at 0.8, 10 % at 0.95; or sphere_weight*sphere_ratio, if larger
       threshold_t('contact_ratio', 0.4_wp, 0.8_wp), &
-      ! force on a layer over that on a half space, Dimitriadis et al. 2002,
-      ! doi:10.1016/S0006-3495(02)75620-8: 1.10 to 1.13 at 0.1, 1.35 to 1.48 at 0.3
+      ! force on a layer over that on a half space at the same indentation (`layer_law`): sliding
+      ! 1.079 at 0.1 and 1.264 at 0.3, bonded with nu = 0.5 1.124 and 1.440; a free plate is softer
       threshold_t('thickness_ratio', 0.1_wp, 0.3_wp), &
       ! Rayleigh and Lamb's layer takes 8 % more energy than a thin plate at 0.7, a third more at
       ! 1.3
@@ -86,6 +86,10 @@ module vcor_impact_validity
       real(wp) :: extent = none
       !> Yield strength, the smaller of the two bodies' [Pa]
       real(wp) :: yield_strength = none
+      !> Whether the plate is a layer on a rigid base
+      logical :: on_base = .false.
+      !> Whether the sphere is not taken as a paraboloid
+      logical :: is_true = .false.
       !> Whether the plate is computed as a layer; measures of thin plates and half spaces do not
       !> apply then
       logical :: is_layer = .false.
@@ -150,6 +154,10 @@ contains
       if (.not. plate%rigid) plate_modulus = plate%complex_modulus(cmplx(0.0_wp, frequency, wp))
       share = plate_share(sphere, plate, plate_modulus, frequency)
       outcome%thickness_ratio = outcome%contact_radius/around%thickness*share
+      if (around%on_base) then
+         outcome%layer_ratio = outcome%contact_radius/around%thickness
+         outcome%layer_stiffening = impact%law%stiffening(outcome%max_indentation)
+      end if
       ! other shapes have no radius
       if (.not. ieee_is_nan(around%radius)) then
          hertz_radius = (0.75_wp*impact%factor)**2
@@ -216,7 +224,7 @@ contains
          outcome%needed_extent = 0.5_wp*shear_speed*outcome%contact_time
          if (wave_number*outcome%needed_extent > pi) outcome%needed_extent = pi/wave_number
       end if
-      if (around%is_sphere) return
+      if (around%is_sphere .or. around%on_base) return
       ! Zener's alpha; W = alpha int F^2 dt, of a half sine alpha F^2 t0/2, as the part of a motion
       ! that the loss itself slows down
       if (.not. (impact%plate%moves() .or. around%is_layer .or. ieee_is_nan(around%thickness))) then
@@ -257,7 +265,8 @@ contains
          end if
       end if
 
-      values = [outcome%contact_ratio, outcome%thickness_ratio, outcome%plate_wave_number, &
+      values = [merge(none, outcome%contact_ratio, around%is_true), &
+         merge(none, outcome%thickness_ratio, around%on_base), outcome%plate_wave_number, &
          outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
          outcome%mean_pressure/around%yield_strength, &
          thick, bends, merge(huge(thick), none, outcome%gains_energy()), &
@@ -267,7 +276,9 @@ contains
          if (around%is_layer .and. any(of_thin_plates == thresholds(i)%measure)) values(i) = none
       end do
       ! NaN must not be compared
-      if (.not. (ieee_is_nan(values(1)) .or. ieee_is_nan(outcome%sphere_ratio))) &
+      if (ieee_is_nan(outcome%sphere_ratio)) return
+      if (ieee_is_nan(values(1)) .and. outcome%sphere_ratio > 0.0_wp) values(1) = 0.0_wp
+      if (.not. ieee_is_nan(values(1))) &
          values(1) = max(values(1), sphere_weight*outcome%sphere_ratio)
    end function judged
 

@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgesvd, dorgqr, dormqr, dtrtrs
+   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgesvd, dorgqr, dormqr, dpotrf, dtrtrs
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -191,6 +191,21 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dormqr
+
+      !> Cholesky factor of a symmetric positive definite matrix
+      pure subroutine dpotrf(uplo, n, a, lda, info)
+         import :: wp
+         !> 'U': upper, 'L': lower triangle
+         character(len=1), intent(in) :: uplo
+         !> Order of the matrix
+         integer, intent(in) :: n
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> The triangle, on return its factor; the other half is not referenced, shape (lda, n)
+         real(wp), intent(inout) :: a(lda, *)
+         !> 0 on success, > 0: not positive definite
+         integer, intent(out) :: info
+      end subroutine dpotrf
 
       !> Solve a triangular system of linear equations
       pure subroutine dtrtrs(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)

@@ -110,7 +110,14 @@ contains
          if (outcome%status == contact_resting &
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
             call outcome%settle(impact)
-         if (outcome%status /= contact_separated) return
+         if (all(outcome%status /= [contact_separated, contact_resting])) return
+         if (impact%law%exceeds(outcome%max_indentation)) then
+            call raise(error, error_numerical, 'the contact becomes wider than its law is known ' &
+               //'for, 20 times the thickness of a layer on a base, 0.85 times the radius of a ' &
+               //'true sphere: take a slower impact')
+            return
+         end if
+         if (outcome%status == contact_resting) return
          if (.not. outcome%is_finite()) then
             call raise(error, error_numerical, 'the numbers of this impact are beyond all that ' &
                //'can be computed')

@@ -179,6 +179,10 @@ contains
       call list%add('thickness_ratio', 'a/2h', '1', &
          "contact_radius over thickness, plate's share", &
          outcome%thickness_ratio)
+      call list%add('layer_ratio', 'a/H', '1', 'contact_radius over thickness on a base', &
+         outcome%layer_ratio)
+      call list%add('layer_stiffening', 'F/F_H', '1', &
+         'force over that on a half space, on a base', outcome%layer_stiffening)
       call list%add('plate_wave_number', 'kH', '1', 'thickness times wave number at pi/t0', &
          outcome%plate_wave_number)
       call list%add('needed_extent', 'pi/k', 'm', 'nearest edge that does not send waves back', &

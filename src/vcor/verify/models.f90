@@ -57,7 +57,7 @@ contains
                      plates(i) == waves .and. laws(j) == law .and. k == 1)
                   call solve_model(case, model, exists)
                   exists = exists .or. plates(i) == waves .or. j > 1 &
-                     .or. case%given('plate', 'half_thickness')
+                     .or. has_thickness(case)
                end associate
                if (.not. exists) exit
                n = n + 1
@@ -70,6 +70,18 @@ contains
       end if
       allocate (models, source=all(:n))
    end subroutine solve_models
+
+   !> Whether a plate that could bend has a thickness
+   pure function has_thickness(case) result(yes)
+      type(case_t), intent(in) :: case
+      logical :: yes
+
+      character(len=:), allocatable :: base
+
+      call case%get('plate', 'base', base)
+      yes = base == 'free' .and. (case%given('plate', 'half_thickness') &
+         .or. case%given('plate', 'thickness'))
+   end function has_thickness
 
    !> Whether a key of &contact makes a difference
    pure function reads(case, key)
