@@ -527,3 +527,18 @@ def test_extreme_impacts(vcor, case):
     assert done.code in (SUCCESS, NUMERICAL), done.err
     if done.code == NUMERICAL:
         assert done.err.count("vcor: error: ") == 1
+
+
+@pytest.mark.parametrize("text", ["23 C", "23C", "23 °C", "23°C", "23 degC"])
+def test_degrees_celsius(vcor, text):
+    """A temperature in degrees Celsius is refused with the kelvin that it is."""
+    changed, line = edit(SLS, "impact", "velocity", f"10.0\n   temperature = {text}")
+    vcor.write(changed)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line + 1}", says=["temperature", "296.15 K"])
+
+
+@pytest.mark.parametrize("quotes", ["‘’", "“”", "’’"])
+def test_curly_quotes(vcor, quotes):
+    """Quotes of a word processor are named as such."""
+    vcor.write(SLS.replace("'steel'", f"{quotes[0]}steel{quotes[1]}", 1))
+    vcor.refuses("run", "case.nml", code=INPUT, says=["curly quotes", "'steel'"])

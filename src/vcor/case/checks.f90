@@ -53,6 +53,8 @@ module vcor_case_checks
       limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
+      limits_t('sphere', 'punch_radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
+      limits_t('plate', 'half_thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('material', 'reference_temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('material', 'valid_temperature_from', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('material', '', 'Pa', 1.0e3_wp, 2.0e12_wp, 'is it in kPa, MPa or GPa?', &

@@ -17,6 +17,9 @@ module vcor_case_values
    integer, parameter :: longest_list = 1000000
    character(len=*), parameter :: digits = '0123456789'
 
+   !> First bytes of typographic quotes in UTF-8
+   character(len=*), parameter :: curly = char(226)//char(128)
+
 contains
 
    !> Convert the value of a command line option, in which a text needs no quotes
@@ -65,6 +68,10 @@ contains
             message = 'found a text in quotes, '//shortened(word)//', expected '//wanted(key)
             if (key%value_kind == text_key) message = 'found '//shortened(word) &
                //' without quotes, expected '//shortened(quoted(word))
+            ! in UTF-8 these quotes have three bytes, which begin with the same two
+            if (index(word, curly) == 1 .and. len(word) > 6) message = 'found curly quotes, ' &
+               //shortened(word)//', expected straight ones, ' &
+               //shortened(quoted(word(4:len(word) - 3)))
          end associate
       else
          associate (word => text(values(1)%first:values(1)%last))
@@ -256,10 +263,17 @@ contains
 
       character(len=*), parameter :: prefixes = 'numckMGT'
       integer, parameter :: powers(*) = [-9, -6, -3, -2, 3, 6, 9, 12]
+      real(wp) :: celsius
       integer :: place
 
       hint = ''
       if (.not. looks_numeric(number) .or. len(unit) == 0 .or. key%unit == '') return
+      if (key%unit == 'K' .and. any(unit == [character(len=4) :: 'C', '°C', 'oC', 'degC'])) then
+         read (number, *, iostat=place) celsius
+         if (place == 0) hint = '; '//shortened(number)//' C is ' &
+            //real_text(anint(100.0_wp*celsius + 27315.0_wp)/100.0_wp)//' K'
+         return
+      end if
       place = index(prefixes, unit(1:1))
       if (unit == key%unit .or. index(key%unit, unit//'/') == 1) then
          hint = number
