@@ -72,7 +72,7 @@ def test_material_named_like_a_group(vcor):
 @pytest.mark.parametrize(
     "path, says",
     [
-        ("plate.thicknes", ["&plate", "'half_thickness'"]),
+        ("plate.half_thicknes", ["&plate", "'half_thickness'"]),
         ("plate.extnt", ["&plate", "'extent'"]),
         ("plate.glassy_modul", ["&material", "'glassy_modulus'"]),
         ("'plate'.dens", ["&material", "'density'"]),
