@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
+import resource
+import signal
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import h5py
 import xarray as xr
 
-from ._library import FileError, InputError, is_altered
+from ._library import Error, FileError, InputError, is_altered
+from ._text import printable
 
 #: How files of HDF5 begin
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+#: How a file ends whose check sum proves that no byte of it is damaged
+_SEALED = b"vcorseal"
+#: Processor time in which HDF5 reads any file [s], and what it reads in a second more [bytes]
+_PATIENCE, _PACE = 5, 50_000_000
+#: Largest ratio by which the filters of HDF5 make data smaller (deflate)
+_DEFLATE = 1032
 
 
 def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  # noqa: A001
@@ -47,23 +60,31 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
             attrs = dict(root.attrs)
         with xr.open_dataset(path, group=group, **options) as data:
             result = data.load()
-    except (KeyError, OSError, ValueError, TypeError, RuntimeError, AttributeError) as error:
+    except (
+        KeyError, OSError, ValueError, TypeError, RuntimeError, AttributeError, MemoryError,
+    ) as error:  # fmt: skip
         if isinstance(error, KeyError) or "group not found" in str(error):
             raise InputError(f"{path}: there is no group '{group}' of vcor in this file") from error
         raise FileError(f"{path}: this file cannot be read: {error}") from None
+    if len(shapes := {one.dims for one in result.data_vars.values()}) > 1:
+        found = " and ".join(str(one) for one in sorted(shapes))
+        raise FileError(f"{path}: this file is damaged: the columns of '{group}' have dimensions "
+                        f"{found}, expected the same of all")  # fmt: skip
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)
     return result.assign_attrs(attrs | dict(result.attrs))
 
 
 def _check(path: str) -> None:
-    """Refuse what is no HDF5 file, or damaged: some damage lets HDF5 crash."""
+    """Refuse what is no HDF5 file, damaged, or leads to other files: some damage stops HDF5."""
     try:
         if Path(path).exists() and not Path(path).is_file():
             raise FileError(f"{path}: found a folder or a device, expected a file of results")
         with Path(path).open("rb") as file:
             if file.read(len(_HDF5)) != _HDF5:
                 raise InputError(f"{path}: this is no HDF5 file")
+            file.seek(-len(_SEALED), os.SEEK_END)
+            sealed = file.read() == _SEALED
         if is_altered(path):
             raise FileError(f"{path}: this file is damaged: its check sum is wrong")
     except FileNotFoundError:
@@ -72,3 +93,76 @@ def _check(path: str) -> None:
         if isinstance(error, FileError):
             raise
         raise FileError(f"{path}: {error.strerror}") from None
+    if not sealed and not _survives(path):
+        raise FileError(f"{path}: this file is damaged: HDF5 cannot read it")
+    try:
+        for _ in _datasets(path):
+            pass
+    except Error:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+        raise FileError(f"{path}: this file cannot be read: {error}") from None
+
+
+def _datasets(path: str) -> Iterator[h5py.Dataset]:
+    """Datasets of a file; refused if one of them is elsewhere, or larger than the file can hold."""
+    size = _DEFLATE * Path(path).stat().st_size
+    with h5py.File(path, "r") as file:
+        groups, known = [file["/"]], set()
+        while groups:
+            group = groups.pop()
+            for name in group:
+                kind = group.get(name, getlink=True)
+                if isinstance(kind, h5py.ExternalLink) or not isinstance(
+                    kind, (h5py.HardLink, h5py.SoftLink)
+                ):
+                    raise InputError(f"{path}: '{printable(name)}' is a link to another file, "
+                                     "expected results in one file")  # fmt: skip
+                if not isinstance(kind, h5py.HardLink):
+                    continue
+                found = group[name]
+                place = h5py.h5o.get_info(found.id).addr
+                if place in known:
+                    continue
+                known.add(place)
+                if isinstance(found, h5py.Group):
+                    groups.append(found)
+                elif isinstance(found, h5py.Dataset):
+                    if found.external or found.is_virtual:
+                        raise InputError(f"{path}: the data of '{printable(name)}' are in another "
+                                         "file, expected results in one file")  # fmt: skip
+                    if found.nbytes > size:
+                        raise FileError(
+                            f"{path}: this file is damaged: '{printable(name)}' has {found.nbytes} "
+                            "bytes, more than the file can hold"
+                        )
+                    yield found
+
+
+def _survives(path: str) -> bool:
+    """Whether HDF5 comes to an end with a file that nobody vouches for, tried by a child process.
+
+    A damaged text of variable length makes it crash or read for ever.
+    """
+    with warnings.catch_warnings():
+        # the child calls nothing but HDF5, whose lock h5py holds while it forks
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
+    if child:
+        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    try:
+        faulthandler.disable()
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, _PATIENCE + Path(path).stat().st_size / _PACE)
+        with h5py.File(path, "r") as file:
+            dict(file.attrs)
+        for one in _datasets(path):
+            dict(one.attrs)
+            dict(one.parent.attrs)
+            one[()]
+    # what it says is for the parent to find
+    except Exception:  # noqa: S110
+        pass
+    finally:
+        os._exit(0)

@@ -1,0 +1,125 @@
+"""HDF5 files that nobody vouches for: results, or an error of one line, in seconds."""
+
+import os
+import random
+import shutil
+import struct
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import PAPER, SWEEPS
+
+import vcor
+from vcor import results
+
+
+@pytest.fixture(scope="module")
+def sweep(tmp_path_factory):
+    """Results of a sweep as HDF5 leaves them after a change: without the check sum of vcor."""
+    import subprocess
+
+    folder = tmp_path_factory.mktemp("sweep")
+    words = ["run", SWEEPS / "sls_velocity.nml", "--quiet", "--set", "output.stem=s"]
+    subprocess.run([os.environ["VCOR"], *map(str, words)], cwd=folder, check=True)
+    with h5py.File(folder / "s.h5", "r+") as file:
+        file.attrs["changed"] = 1
+    assert not (folder / "s.h5").read_bytes().endswith(results._SEALED)
+    return folder / "s.h5"
+
+
+@pytest.fixture
+def copy(sweep, tmp_path):
+    shutil.copy(sweep, tmp_path / "copy.h5")
+    return tmp_path / "copy.h5"
+
+
+def test_a_file_of_others_is_read(sweep):
+    assert vcor.open(sweep).cor.dims == ("impact.velocity",)
+
+
+def test_links_to_other_files(copy, tmp_path):
+    (tmp_path / "secret.bin").write_bytes(struct.pack("<8d", *range(8)))
+    with h5py.File(copy, "r+") as file:
+        file["summary/here"] = h5py.SoftLink("/summary/cor")
+    assert "cor" in vcor.open(copy)
+    with h5py.File(copy, "r+") as file:
+        file["summary/there"] = h5py.ExternalLink("other.h5", "/summary/cor")
+    with pytest.raises(vcor.InputError, match="copy.h5: 'there' is a link to another file"):
+        vcor.open(copy)
+
+
+@pytest.mark.parametrize("way", ["external", "virtual"])
+def test_data_in_other_files(copy, tmp_path, way):
+    secret = tmp_path / "secret.h5"
+    with h5py.File(secret, "w") as file:
+        file["x"] = np.arange(400.0)
+    with h5py.File(copy, "r+") as file:
+        n = file["summary/cor"].shape
+        del file["summary/cor"]
+        if way == "external":
+            file["summary"].create_dataset("cor", n, "<f8", external=[(str(secret), 0, 3200)])
+        else:
+            layout = h5py.VirtualLayout(n, "<f8")
+            layout[:] = h5py.VirtualSource(str(secret), "x", (400,))[: n[0]]
+            file["summary"].create_virtual_dataset("cor", layout)
+    with pytest.raises(vcor.InputError, match="the data of 'cor' are in another file"):
+        vcor.open(copy)
+    pytest.importorskip("matplotlib")
+    from vcor import plot
+
+    with pytest.raises(vcor.InputError, match="the data of 'cor' are in another file"):
+        plot.figure([copy])
+
+
+def test_a_shape_of_its_own(copy):
+    with h5py.File(copy, "r+") as file:
+        del file["summary/cor"]
+        file["summary/cor"] = np.zeros(3)
+    with pytest.raises(vcor.FileError, match="damaged: the columns of 'summary' have dimensions"):
+        vcor.open(copy)
+
+
+def test_more_than_a_file_can_hold(copy):
+    with h5py.File(copy, "r+") as file:
+        file["summary"].create_dataset("huge", (10**12,), "<f8", chunks=(1000,))
+    with pytest.raises(vcor.FileError, match="'huge' has 8000000000000 bytes, more than the file"):
+        vcor.open(copy)
+
+
+def test_hdf5_that_does_not_end_or_crashes(copy, monkeypatch):
+    """The child that tries the file is killed, by its limit or by its fault; the parent is not."""
+    monkeypatch.setattr(results, "_PATIENCE", 1)
+    for harm in (lambda *_: [None for _ in iter(int, 1)], lambda *_: os.kill(os.getpid(), 11)):
+        monkeypatch.setattr(results, "_datasets", harm)
+        with pytest.raises(vcor.FileError, match="copy.h5: this file is damaged: HDF5 cannot read"):
+            vcor.open(copy)
+
+
+def test_sums_of_sealed_files_vouch(tmp_path, monkeypatch, program):
+    """No child for a file of vcor."""
+    program("run", PAPER / "sls.nml", "--set", "output.hdf5=.true.", "--quiet")
+    monkeypatch.setattr(results, "_survives", lambda _: pytest.fail("tried"))
+    assert float(vcor.open(tmp_path / "sls.h5").cor) == vcor.read(PAPER / "sls.nml").solve()["cor"]
+
+
+def test_damaged_bytes(sweep, tmp_path):
+    """Any byte: the file is read, with the columns it had, or refused."""
+    rng, whole = random.Random(5), sweep.read_bytes()
+    columns = set(vcor.open(sweep).variables)
+    path, read = tmp_path / "d.h5", 0
+    for _ in range(30):
+        data = bytearray(whole)
+        for _ in range(rng.choice((1, 1, 3, 20))):
+            data[rng.randrange(len(data))] = rng.choice((0, 1, 127, 255, rng.randrange(256)))
+        path.write_bytes(data[: len(data) if rng.random() < 0.9 else rng.randrange(len(data))])
+        try:
+            found = vcor.open(path)
+        except (vcor.InputError, vcor.FileError) as error:
+            assert "\n" not in str(error)
+            continue
+        read += 1
+        assert isinstance(found, xr.Dataset)
+        assert len(columns & set(found.variables)) >= len(columns) - 3
+    assert read > 5
