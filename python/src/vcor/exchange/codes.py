@@ -10,6 +10,7 @@ import argparse
 import contextlib
 import math
 import os
+import re
 import sys
 import tomllib
 import warnings
@@ -35,12 +36,13 @@ from .._library import (
     whole,
 )
 from ..case import Case, as_case, number
-from .contact_laws import LAWS, Twin
+from .contact_laws import ACCURACY, LAWS, Twin
 
 TEMPLATES = Path(__file__).with_name("templates")
 #: Columns that an export needs
-COLUMNS = ("cor", "cor_sphere", "contact_time", "max_force", "max_indentation", "contact_radius",
-           "initial_energy", "validity", "validity_cause")  # fmt: skip
+COLUMNS = ("cor", "cor_sphere", "cor_error", "cor_sphere_error", "contact_time", "max_force",
+           "max_indentation", "contact_radius", "initial_energy", "validity",
+           "validity_cause")  # fmt: skip
 #: What e is, and where its end of contact is
 MEANING = {
     "cor_sphere": "speed of the sphere away from the plate at rest over that towards it",
@@ -241,6 +243,18 @@ def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr
             f"{case.name}: {lost.sum()} of {lost.size} velocities have no result, the first one is "
             f"{float(worst['impact.velocity']):.4g} m/s ({worst.status.item()})"
         )
+    for name in MEANING:
+        # of an elastic pair it is 1 up to the error of the solution
+        excess = found[name].values - 1
+        within = excess <= np.fmax(found[f"{name}_error"].values, ACCURACY)
+        if name == quantity and not within.all():
+            raise NumericalError(
+                f"{case.name}: found {name} = {1 + excess.max():.6g} at "
+                f"{velocity[np.argmax(excess)]:.4g} m/s, expected at most 1: no program takes it"
+            )
+        found[name] = found[name].copy(
+            data=np.where(within, np.fmin(1.0, found[name]), found[name])
+        )
     columns = {
         "e": found.cor, "e_sphere": found.cor_sphere,
         "contact_time": found.contact_time, "max_force": found.max_force,
@@ -283,8 +297,10 @@ def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
     if case["sphere.shape"] != "sphere":
         body = f"shape {case['sphere.shape']}"
     return [
-        f"vcor {_library.__version__}: {case['case.title'] or case.name}, for {target.name}",
+        # Python reads an encoding from its first two lines: nothing of the case is in them
+        f"vcor {_library.__version__}, for {target.name}",
         f"e: {meaning} ({curve.attrs['quantity']}); contact ends where the force returns to zero",
+        f"case: {case['case.title'] or case.name}",
         f"pair: {name}, reduced mass {curve.attrs['mass']:.6g} kg, {body}",
         f"contact law {end}, waves {waves}, temperature "
         + (f"{temperature:g} K" if temperature else "not given")
@@ -320,16 +336,21 @@ def _finished(
     }  # fmt: skip
     texts = {}
     for ending in target.files:
-        comment = COMMENTS.get(ending, "# ")
-        said = [comment + _text.printable(line) for line in lines]
-        if ending == ".xml":
-            said = [line.replace("--", "- -") for line in said]
+        said = [_comment(line, ending) for line in lines]
         template = (TEMPLATES / f"{target.name}{ending}.txt").read_text(encoding="utf-8")
         kept = [line.removeprefix(kind) for line in template.splitlines()
                 if not line.startswith(other_kind)]  # fmt: skip
         text = _Template("\n".join(kept) + "\n")
         texts[ending] = text.substitute(known, **values, header="\n".join(said))
     return Export(target.name, curve, texts, lines, misfit, options or {})
+
+
+def _comment(line: str, ending: str) -> str:
+    """A line of a comment that ends with it, whatever stands in it."""
+    line = COMMENTS.get(ending, "# ") + _text.printable(line).rstrip()
+    # a comment of XML has no --; elsewhere the next line would belong to this one
+    line = re.sub("-(?=-)", "- ", line) if ending == ".xml" else line
+    return line + "." if line.endswith(("\\", "??/", "&")) else line
 
 
 def _radii(case: Case) -> tuple[float, float]:
@@ -479,7 +500,7 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
         f"x [{attrs['units']}], e [1], t_c/x [s per unit of x]",
     ]
     rows = _rows(shown.x.values, shown[curve.attrs["e"]].values, ratio)
-    head = "".join(f"# {_text.printable(line)}\n" for line in lines)
+    head = "".join(_comment(line, ".csv") + "\n" for line in lines)
     return Export("master", shown, {".csv": f"{head}x,e,t_c/x\n{rows}\n"}, lines, 0.0, {})
 
 

@@ -92,7 +92,7 @@ class Law:
 
         def restitution(x: float) -> Floats:
             e: Floats = np.exp(-loss(x + power) * np.exp(x + power))
-            return e
+            return np.minimum(e, 1.0)
 
         def balance(x: float) -> float:
             misfit = restitution(x) - cor
