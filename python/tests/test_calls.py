@@ -133,3 +133,23 @@ def test_one_sweep_or_one_quantity_needs_no_list():
     sweep = vcor.read(SWEEPS / "sls_velocity.nml").run()
     one, other = drawn(sweep, quantities="cor"), drawn([sweep], quantities=["cor"])
     assert one.axes[0].get_ylabel() == other.axes[0].get_ylabel()
+
+
+@pytest.mark.parametrize(("error", "line"), [
+    (FileNotFoundError(2, "No such file", "x.csv"), "x.csv: No such file"),
+    (OSError(12, "Cannot allocate memory"), "Cannot allocate memory"),
+    (MemoryError(), "the memory is too small for this"),
+])  # fmt: skip
+def test_an_error_names_its_own_cause(error, line, monkeypatch, capfd):
+    """Not the standard output, unless that cannot be written (test_exchange.py)."""
+    from vcor import _command
+    from vcor.exchange import cards
+
+    def fail():
+        raise error
+
+    monkeypatch.setattr(cards, "main", fail)
+    with pytest.raises(SystemExit) as end:
+        _command.card()
+    assert end.value.code == 4
+    assert capfd.readouterr().err == f"vcor: error: {line}\n"

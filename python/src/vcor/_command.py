@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import functools
 import importlib
+import io
 import os
 import signal
 import sys
@@ -71,8 +72,22 @@ def one_line() -> Iterator[None]:
     except Error as error:
         sys.stderr.write(f"vcor: error: {printable(str(error))}\n")
         sys.exit(error.code)
+    except MemoryError:
+        sys.stderr.write("vcor: error: the memory is too small for this\n")
+        sys.exit(FileError.code)
     except KeyboardInterrupt:
         sys.exit(130)
+
+
+def _print(text: str) -> None:
+    """Write what a command prints, UTF-8 in whatever locale."""
+    try:
+        sys.stdout.buffer.write(text.encode(errors="replace"))
+        sys.stdout.flush()
+    except OSError as error:
+        # what is left in its buffer would fail again at the end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        raise FileError(f"cannot write the standard output: {error.strerror}") from None
 
 
 def _run(name: str, module: str) -> None:
@@ -82,20 +97,21 @@ def _run(name: str, module: str) -> None:
     with one_line():
         if sys.stdout is None:
             raise FileError("cannot write the standard output: it is closed")
+        # printed at the end: until then an error of the system is about something else
+        printed = io.StringIO()
         try:
-            # a text is UTF-8 in whatever locale
-            sys.stdout.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
-            importlib.import_module(f"vcor.{module}").main()
-            sys.stdout.flush()
+            with contextlib.redirect_stdout(printed):
+                importlib.import_module(f"vcor.{module}").main()
         except OSError as error:
-            # what is left in its buffer would fail again at the end
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-            raise FileError(f"cannot write the standard output: {error.strerror}") from None
+            what = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
+            raise FileError(f"{what}{error.strerror or error}") from None
         except ModuleNotFoundError as error:
             raise UsageError(
                 f"vcor {name} needs the Python package {error.name}, expected: "
                 f"pip install {error.name}"
             ) from None
+        finally:
+            _print(printed.getvalue())
 
 
 # The commands vcor-NAME
