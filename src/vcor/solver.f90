@@ -214,7 +214,7 @@ contains
 
    !> Compute the course of an impact
    subroutine solve_by_what_works(self, impact, trajectory, error)
-      class(auto_t), intent(in) :: self
+      class(auto_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error

@@ -159,7 +159,7 @@ contains
    !> Solve and evaluate; the check that there was no error is counted when there was one
    subroutine run(solver, impact, outcome)
       !> The solver
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its outcome

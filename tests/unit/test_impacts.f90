@@ -404,7 +404,7 @@ contains
       !> Name of the method
       character(len=*), intent(in) :: method
       !> The method
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       !> Accuracy asked for
       real(wp), intent(in) :: asked
       !> Accuracy of the references
@@ -429,7 +429,7 @@ contains
       !> Its name and that of the method
       character(len=*), intent(in) :: name
       !> The method
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       !> Accuracy asked for
       real(wp), intent(in) :: asked
       !> Accuracy of the references

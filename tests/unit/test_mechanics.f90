@@ -310,7 +310,7 @@ contains
    !> Whether a solver says that the contact grows again; otherwise it has a result
    function is_growing(solver, impact)
       !> The solver
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Whether it says so

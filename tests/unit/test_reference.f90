@@ -249,7 +249,7 @@ contains
    !> One impact by product integration
    subroutine check_direct(solver, i, tolerance, way, result)
       !> The solver
-      type(product_t), intent(in) :: solver
+      type(product_t), intent(inout) :: solver
       !> Row of the reference
       integer, intent(in) :: i
       !> Tolerance of both coefficients of restitution

@@ -339,7 +339,7 @@ contains
    !> Check one trajectory
    subroutine check_trajectory(solver, problem, tolerance, name)
       !> The solver
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       !> The impact
       type(impact_t), intent(in) :: problem
       !> Tolerance of integrals

@@ -14,6 +14,7 @@ module vcor_impact_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : contact_modulus_t
+   use vcor_impact_face, only : face_t
    use vcor_impact_law, only : contact_law_t, sphere_factor
    use vcor_impact_plate, only : plate_t
    use vcor_kinds, only : unset, wp
@@ -39,6 +40,9 @@ module vcor_impact_problem
       type(plate_t) :: plate
       !> Contact law
       type(contact_law_t) :: law
+      !> The face that is struck, for method coupled, which takes from it what modulus, plate and law
+      !> are for the other methods
+      type(face_t) :: face
    contains
       procedure :: launch
       procedure :: free_path

@@ -1,12 +1,28 @@
-!> Response of the face of a body to a pressure p(r) = A J0(kr): its displacement is
-!> w = G(k) A J0(kr), and L(k) = mu k G/(1 - nu), with the shear modulus mu, is 1 for the half space
+!> Response of the face of a layer to a pressure p(r) = A J0(kr) exp(s t): its displacement is
+!> w = G(k, s) A J0(kr) exp(s t)
+!>
+!> All is written for L(k, p) = mu k G/(1 - nu), which is 1 for the half space at rest and falls to
+!> it for k -> oo, with the shear modulus mu, p = s/c_s and the speed c_s of shear waves. With H the
+!> thickness, q = (c_s/c_p)^2 = (1 - 2 nu)/(2 (1 - nu)), y = (p/k)^2, a = sqrt(1 + q y) and
+!> b = sqrt(1 + y), the Rayleigh function is D = S - T with S = (2 + y)^2 and T = 4 a b, and the
+!> half space (H. Lamb, Phil. Trans. R. Soc. A 203 (1904) 1, doi:10.1098/rsta.1904.0013) has
+!> L = a y/((1 - nu) D). A layer has the factors, with ta and tb the hyperbolic tangents of a and b
+!> times k H, for a free plate times k H/2,
+!>
+!>     free plate      (D/2) [ta tb/(S tb - T ta) + 1/(S ta - T tb)]
+!>     sliding base    D ta tb/(S tb - T ta)
+!>     bonded base     D (tb - a b ta)/[(S + 4 a^2 b^2) ta tb - a b (4 + S)
+!>                        + 4 a b (2 + y)/(cosh(a k H) cosh(b k H))]
+!>
+!> The sums of convolution quadrature amplify rounding, and L - 1 is small where most of the nodes
+!> are: all differences of nearly equal terms are replaced by what is left of them.
 module vcor_impact_response
    use vcor_kinds, only : wp
    implicit none
    private
 
    public :: base_half_space, base_free, base_bonded, base_sliding
-   public :: static_response
+   public :: static_response, wave_response
 
    !> What is below the face: the body reaches to infinity
    integer, parameter :: base_half_space = 0
@@ -46,5 +62,115 @@ contains
          if (.not. x > 0.0_wp) excess = -1.0_wp
       end if
    end function static_response
+
+   !> L - 1 of a face with waves
+   elemental function wave_response(base, nu, thickness, k, p) result(excess)
+      !> One of the `base_*` constants
+      integer, intent(in) :: base
+      !> Poisson's ratio [-]
+      real(wp), intent(in) :: nu
+      !> Thickness H [m], > 0 for a layer
+      real(wp), intent(in) :: thickness
+      !> Wavenumber k [1/m], > 0
+      real(wp), intent(in) :: k
+      !> Laplace variable over the speed of shear waves [1/m], real part > 0
+      complex(wp), intent(in) :: p
+      !> L - 1 [-]
+      complex(wp) :: excess
+
+      ! exponent beyond which a layer differs from the half space by less than rounding
+      real(wp), parameter :: far = 38.0_wp
+      complex(wp) :: y, a, b, s, t, d, poly, kappa, even, less, ta, tb, more, ratio
+      ! of the wave that reaches farther, 1, and the other, 2: rate, exp(-2 length rate) and 1 less
+      ! that; f and w make up the difference of their tangents
+      complex(wp) :: rate, e1, e2, rest1, rest2, f, w
+      real(wp) :: q, length, sign
+
+      q = (1.0_wp - 2.0_wp*nu)/(2.0_wp*(1.0_wp - nu))
+      y = (p/k)**2
+      a = root(1.0_wp + q*y)
+      b = root(1.0_wp + y)
+      ! D = S - T = (S^2 - T^2)/(S + T) = y poly/(S + T), and L - 1 with its factor y
+      poly = 16.0_wp*(1.0_wp - q) + y*(24.0_wp - 16.0_wp*q + y*(8.0_wp + y))
+      excess = y*(2.0_wp*(1.0_wp - q)*(4.0_wp*q/(1.0_wp + a) + 4.0_wp/(1.0_wp + b) &
+         + a*(4.0_wp + y) + 4.0_wp*q*b) - (24.0_wp - 16.0_wp*q) - y*(8.0_wp + y))/poly
+      if (base == base_half_space) return
+
+      length = k*thickness
+      if (base == base_free) length = 0.5_wp*length
+      sign = 1.0_wp
+      if (real(b, wp) < real(a, wp)) sign = -1.0_wp
+      rate = a
+      if (sign < 0.0_wp) rate = b
+      if (2.0_wp*length*real(rate, wp) > far) return
+      rest1 = decay(2.0_wp*length*rate)
+      w = decay(length*sign*(1.0_wp - q)*y/(a + b))
+      e1 = 1.0_wp - rest1
+      e2 = e1*(1.0_wp - w)**2
+      rest2 = rest1 + e1*w*(2.0_wp - w)
+      f = 2.0_wp*e1/((1.0_wp + e1)*(1.0_wp + e2))
+      ta = rest1/(1.0_wp + e1)
+      tb = rest2/(1.0_wp + e2)
+      less = 2.0_wp*e1/(1.0_wp + e1)
+      if (sign < 0.0_wp) then
+         ta = tb
+         tb = rest1/(1.0_wp + e1)
+         less = 2.0_wp*e2/(1.0_wp + e2)
+      end if
+
+      ! the factor of the layer less 1, with more = T (tb - ta)
+      s = (2.0_wp + y)**2
+      t = 4.0_wp*a*b
+      d = y*poly/(s + t)
+      more = t*sign*f*w*(2.0_wp - w)
+      select case (base)
+      case (base_free)
+         ratio = 0.5_wp*((d*less + more)/(d*ta - more) - (d*less*tb + more)/(d*tb + more))
+      case (base_sliding)
+         ratio = -(d*less*tb + more)/(d*tb + more)
+      case default
+         kappa = -y*(1.0_wp + q + q*y)/(1.0_wp + a*b)
+         even = f*((s + 0.25_wp*t**2)*w**2 + 2.0_wp*(1.0_wp - w)*(y + 2.0_wp*kappa)**2)
+         ratio = (d*(more/t - kappa*less) + even)/(kappa*d - even)
+      end select
+      excess = excess + (1.0_wp + excess)*ratio
+   end function wave_response
+
+   !> Square root with a positive real part, faster than that of complex numbers
+   elemental function root(z)
+      !> Number, not on the negative real axis
+      complex(wp), intent(in) :: z
+      complex(wp) :: root
+
+      real(wp) :: part
+
+      associate (x => real(z, wp), y => aimag(z))
+         part = sqrt(0.5_wp*(sqrt(x**2 + y**2) + abs(x)))
+         if (x >= 0.0_wp) then
+            root = cmplx(part, 0.5_wp*y/part, wp)
+         else
+            root = cmplx(0.5_wp*abs(y)/part, merge(part, -part, y >= 0.0_wp), wp)
+         end if
+      end associate
+   end function root
+
+   !> 1 - exp(-z), to full accuracy for small z too
+   elemental function decay(z)
+      !> Exponent, real part >= 0
+      complex(wp), intent(in) :: z
+      complex(wp) :: decay
+
+      ! below, sinh(z/2) in 1 - exp(-z) = 2 exp(-z/2) sinh(z/2) is a short series
+      real(wp), parameter :: small = 0.5_wp
+      complex(wp) :: square
+
+      if (abs(real(z, wp)) + abs(aimag(z)) > small) then
+         decay = 1.0_wp - exp(-z)
+      else
+         square = 0.25_wp*z**2
+         decay = z*exp(-0.5_wp*z)*(1.0_wp + square/6.0_wp*(1.0_wp + square/20.0_wp &
+            *(1.0_wp + square/42.0_wp*(1.0_wp + square/72.0_wp*(1.0_wp + square/110.0_wp)))))
+      end if
+   end function decay
 
 end module vcor_impact_response

@@ -85,6 +85,8 @@ module vcor_impact_trajectory
       real(wp) :: max_force_error = unset
       !> Accuracy requested for both [-]; 0 if none was, as the time step is given
       real(wp) :: accuracy = 0.0_wp
+      !> Largest contact radius [m]; NaN: that of the contact law at the largest indentation
+      real(wp) :: contact_radius = unset
       !> Number of exponentials that approximate the kernel; 0 if it is used unchanged
       integer :: kernel_terms = 0
       !> Estimated largest relative error of that sum

@@ -56,7 +56,7 @@ contains
    !> made for a window of some expected contact times, and again for a longer window if the contact
    !> outlasts it
    subroutine solve(self, impact, trajectory, error)
-      class(ive_t), intent(in) :: self
+      class(ive_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error

@@ -36,7 +36,8 @@ module vcor_solver_type
       logical :: ghost = .false.
    end type solver_settings_t
 
-   !> A method of solution; immutable once built, so threads can share it
+   !> A method of solution. It may keep what it computes for similar impacts, which changes no
+   !> result: each thread has its own copy
    type, abstract :: solver_t
       !> Settings with which it was built
       type(solver_settings_t) :: settings
@@ -49,7 +50,7 @@ module vcor_solver_type
       !> Compute the course of an impact
       subroutine solve_i(self, impact, trajectory, error)
          import :: error_t, impact_t, solver_t, trajectory_t
-         class(solver_t), intent(in) :: self
+         class(solver_t), intent(inout) :: self
          type(impact_t), intent(in) :: impact
          !> Course of the impact; one that does not end in separation is a status, not an error
          type(trajectory_t), intent(out) :: trajectory
@@ -75,18 +76,19 @@ contains
 
    !> Accuracy of the coefficient of restitution if none is requested
    pure function default_accuracy(method) result(accuracy)
-      !> ive or direct
+      !> ive, direct or coupled
       character(len=*), intent(in) :: method
       !> Accuracy [-]
       real(wp) :: accuracy
 
       accuracy = 1.0e-6_wp
       if (method == 'ive') accuracy = 1.0e-8_wp
+      if (method == 'coupled') accuracy = 1.0e-5_wp
    end function default_accuracy
 
    !> Solve an impact, and compare its estimated error with the requested accuracy, only here
    subroutine solve_impact(solver, impact, trajectory, outcome, error)
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(inout) :: trajectory
       !> Outcome; without separation it has only a status

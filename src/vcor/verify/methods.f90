@@ -233,7 +233,7 @@ contains
    !> Solve, and store a numerical failure
    subroutine solve(self, solver, impact, error, lenient)
       class(attempt_t), intent(inout) :: self
-      class(solver_t), intent(in) :: solver
+      class(solver_t), intent(inout) :: solver
       type(impact_t), intent(in) :: impact
       !> An error that is not numerical; unallocated on success
       type(error_t), allocatable, intent(out) :: error

@@ -88,7 +88,7 @@ contains
 
    !> Compute the course of an impact, with the error estimated from runs with longer steps
    subroutine solve(self, impact, trajectory, error)
-      class(product_t), intent(in) :: self
+      class(product_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error

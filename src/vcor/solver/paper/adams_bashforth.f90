@@ -48,7 +48,7 @@ contains
 
    !> Compute the course of an impact, with errors estimated from runs with longer steps
    subroutine solve(self, impact, trajectory, error)
-      class(adams_bashforth_t), intent(in) :: self
+      class(adams_bashforth_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error

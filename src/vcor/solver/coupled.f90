@@ -1,0 +1,513 @@
+!> Exact contact with waves: the row of springs of `vcor_impact_face` marched in time together with
+!> the sphere, so that contact, waves and relaxation are solved as one
+!>
+!> A mesh has n/2 and n steps, from which results are extrapolated to none; their error is the
+!> distance from what the next coarser mesh gives, which has half of the steps, fewer springs and
+!> fewer hats. The mesh is refined until the accuracy is reached. Window and radius of the row
+!> follow the contact and are rounded up, so that neighbours in a sweep share kernels; a kernel is
+!> the same whether it is shared or not.
+module vcor_solver_coupled
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_face, only : face_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
+      col_sphere, col_sphere_velocity, col_time, col_velocity, contact_lasting, &
+      contact_resting, contact_separated, trajectory_t
+   use vcor_kinds, only : unset, wp
+   use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
+   use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
+      march
+   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
+   implicit none
+   private
+
+   public :: coupled_t, new_coupled
+
+   !> Place of a kernel
+   type :: slot_t
+      type(kernel_t), allocatable :: kernel
+   end type slot_t
+
+   !> Places for kernels, and their largest size in real numbers, 64 MB
+   integer, parameter :: slots = 64, most_numbers = 8000000
+
+   !> The coupled contact
+   type, extends(solver_t) :: coupled_t
+      private
+      !> Kernels of earlier impacts
+      type(slot_t) :: slot(slots)
+      !> Place of the newest kernel
+      integer :: newest = slots
+   contains
+      procedure :: solve
+   end type coupled_t
+
+   !> A mesh on which an impact is solved twice
+   type :: pair_t
+      !> With half of the steps, and with all
+      type(course_t) :: coarse, fine
+      !> Extrapolated coefficient of restitution of the sphere [-], contact time [s], largest force
+      !> [N] and displacement [m] and their times [s]
+      real(wp) :: cor = 0.0_wp, contact_time = 0.0_wp
+      real(wp) :: max_force = 0.0_wp, time_of_max_force = 0.0_wp
+      real(wp) :: depth = 0.0_wp, time_of_depth = 0.0_wp
+   end type pair_t
+
+   !> A largest value
+   type :: peak_t
+      real(wp) :: value = 0.0_wp
+      !> Its time [s]
+      real(wp) :: time = 0.0_wp
+   end type peak_t
+
+   !> Steps of the march that scouts, of the coarsest mesh, and the finest mesh, of 2560 steps
+   integer, parameter :: crude_steps = 40, first_steps = 160, finest = 4
+   !> Ratio of the errors of two levels at the best
+   real(wp), parameter :: best_ratio = 8.0_wp
+   !> Number of times that the steps of the scout are halved
+   integer, parameter :: most_attempts = 6
+   !> Ratios to which window and radius are rounded up, and their margin
+   real(wp), parameter :: window_ratio = 2.0_wp**0.125_wp, radius_ratio = 2.0_wp**0.25_wp
+   real(wp), parameter :: margin = 1.04_wp
+
+contains
+
+   !> Build the solver
+   subroutine new_coupled(self, settings)
+      type(coupled_t), intent(out) :: self
+      !> Accuracy and end time
+      type(solver_settings_t), intent(in) :: settings
+
+      self%settings = settings
+      if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('coupled')
+   end subroutine new_coupled
+
+   !> Compute the course of an impact
+   subroutine solve(self, impact, trajectory, error)
+      class(coupled_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(out) :: trajectory
+      type(error_t), allocatable, intent(out) :: error
+
+      type(pair_t) :: before, now
+      type(course_t) :: course
+      real(wp) :: end_time, window, radius, cor_error
+      integer :: attempt, level, status
+
+      end_time = self%settings%end_time
+      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
+      attempt = 0
+      level = -1
+      window = 0.0_wp
+      radius = 0.0_wp
+      do
+         if (level < 0) then
+            call scout(self, impact, attempt, end_time, window, radius, course, error)
+            if (allocated(error)) return
+            if (course%status /= course_ended) then
+               call record_contact(course, impact, trajectory)
+               return
+            end if
+            level = 0
+         end if
+         call solve_pair(self, impact, mesh_of(level, impact%face, window, radius), now, error)
+         if (allocated(error)) return
+         status = now%coarse%status
+         if (status == course_ended) status = now%fine%status
+         if (status /= course_ended) then
+            ! what the scout has seen is not so
+            attempt = attempt + 1
+            level = -1
+            if (attempt <= most_attempts) cycle
+            call raise(error, error_numerical, 'the end of the contact depends on the length of ' &
+               //'the steps, however short: the plate is too light or too soft for the sphere')
+            return
+         end if
+         if (level > 0) then
+            cor_error = distance(before, now, impact)
+            if (cor_error <= self%settings%accuracy) exit
+            if (cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
+               call raise(error, error_numerical, 'the estimated error of cor_sphere is ' &
+                  //as_text(cor_error)//' with '//steps_text(level)//' steps and will not fall ' &
+                  //'to '//as_text(self%settings%accuracy)//': give a larger solver.accuracy')
+               return
+            end if
+         end if
+         before = now
+         level = level + 1
+      end do
+      call record(now, impact, trajectory)
+      trajectory%accuracy = self%settings%accuracy
+      trajectory%cor_sphere_error = cor_error
+      trajectory%cor_error = cor_error
+      trajectory%contact_time_error = abs(now%contact_time - before%contact_time)
+      trajectory%max_force_error = abs(now%max_force - before%max_force)
+      if (now%contact_time > end_time) trajectory%status = contact_lasting
+   end subroutine solve
+
+   !> Estimated error of the extrapolated coefficient of restitution: what the steps change, or what
+   !> springs and hats change at equal steps, whichever is larger, so that they do not cancel by
+   !> chance
+   pure function distance(before, now, impact)
+      !> Results of the level before
+      type(pair_t), intent(in) :: before
+      !> Results of this level, whose longer steps are the shorter ones of the level before
+      type(pair_t), intent(in) :: now
+      type(impact_t), intent(in) :: impact
+      !> Error [-]
+      real(wp) :: distance
+
+      distance = max(abs(now%cor - before%cor), &
+         abs(now%coarse%cor(impact) - before%fine%cor(impact)))
+   end function distance
+
+   !> Mesh of a level: twice the steps of the level before, with more springs and hats. The response
+   !> of a layer varies over its thickness, which the longest hats resolve
+   pure function mesh_of(level, face, window, radius) result(mesh)
+      !> Level, from 0
+      integer, intent(in) :: level
+      type(face_t), intent(in) :: face
+      !> Duration of all steps [s]
+      real(wp), intent(in) :: window
+      !> Radius of the row of springs [m]
+      real(wp), intent(in) :: radius
+      type(mesh_t) :: mesh
+
+      integer, parameter :: most_for_layer = 24
+
+      mesh = mesh_t(first_steps*2**level, nint(112.0_wp*1.5_wp**level), 8 + 2*level, window, radius)
+      if (face%thickness > 0.0_wp) mesh%hats = mesh%hats &
+         + int(min(3.0_wp*radius/face%thickness, real(most_for_layer, wp)))
+   end function mesh_of
+
+   !> March with few steps to find how long the contact lasts and how large it becomes. A sphere
+   !> that rests, or does not leave before the end time, is marched again with steps that resolve it
+   subroutine scout(self, impact, attempt, end_time, window, radius, course, error)
+      type(coupled_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      !> Number of earlier attempts, which shorter steps have proved wrong
+      integer, intent(in) :: attempt
+      !> Time by which the contact must have ended [s]
+      real(wp), intent(in) :: end_time
+      !> Duration of all steps for the contact [s]
+      real(wp), intent(out) :: window
+      !> Radius of the row of springs for the contact [m]
+      real(wp), intent(out) :: radius
+      !> Course; of a contact that does not end, all that is known
+      type(course_t), intent(out) :: course
+      type(error_t), allocatable, intent(out) :: error
+
+      ! steps to the time scale of a contact
+      real(wp), parameter :: resolved = 8.0_wp
+      ! growth of a window or row that is too short, and how much longer than expected they begin
+      real(wp), parameter :: growth = 2.0_wp**0.5_wp, spare = 1.25_wp
+      integer, parameter :: most_tries = 100
+      type(mesh_t) :: mesh
+      real(wp) :: time_scale
+      integer :: steps, tries
+
+      window = 0.0_wp
+      radius = 0.0_wp
+      time_scale = impact%time_scale()
+      mesh = mesh_t(crude_steps, 32, 5)
+      if (attempt > 0) mesh = mesh_t(crude_steps*2**attempt, 112, 8)
+      steps = mesh%steps
+      mesh%window = rounded(spare*impact%law%contact_time*time_scale, growth)
+      mesh%radius = impact%law%radius(impact%factor, &
+         impact%law%depth*impact%speed_scale(time_scale)*time_scale)
+      if (is_curved(impact)) mesh%radius = rounded(spare*mesh%radius, growth)
+      do tries = 1, most_tries
+         call run(self, impact, mesh, course, error)
+         if (allocated(error) .or. course%status == course_ended) exit
+         if (course%status == course_outgrows) then
+            mesh%radius = growth*mesh%radius
+            cycle
+         end if
+         if (course%rests(impact%mass*impact%gravity) .or. mesh%window >= end_time) then
+            if (mesh%steps > steps) exit
+            mesh%steps = 4*ceiling(min(0.25_wp*resolved*mesh%window/time_scale, &
+               0.25_wp*real(first_steps*2**finest, wp)))
+            if (mesh%steps > steps) cycle
+            exit
+         end if
+         mesh%steps = steps
+         mesh%window = growth*mesh%window
+      end do
+      if (tries > most_tries) call raise(error, error_numerical, 'neither the duration nor the ' &
+         //'radius of the contact can be found')
+      if (allocated(error) .or. course%status /= course_ended) return
+      window = rounded(margin*course%contact_time, window_ratio)*window_ratio**attempt
+      radius = mesh%radius
+      if (is_curved(impact)) radius = rounded(margin*maxval(course%radius), radius_ratio) &
+         *radius_ratio**attempt
+   end subroutine scout
+
+   !> Whether the contact has no fixed radius, which only that of a flat punch has
+   pure function is_curved(impact)
+      type(impact_t), intent(in) :: impact
+      logical :: is_curved
+
+      is_curved = impact%law%start_exponent > 1.0_wp
+   end function is_curved
+
+   !> Round up to a power of a ratio
+   pure function rounded(value, ratio)
+      !> Number, > 0
+      real(wp), intent(in) :: value
+      !> Ratio, > 1
+      real(wp), intent(in) :: ratio
+      real(wp) :: rounded
+
+      rounded = ratio**ceiling(log(value)/log(ratio))
+   end function rounded
+
+   !> March on a mesh
+   subroutine run(self, impact, mesh, course, error)
+      type(coupled_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      type(mesh_t), intent(in) :: mesh
+      type(course_t), intent(out) :: course
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      do i = 1, slots
+         if (.not. allocated(self%slot(i)%kernel)) cycle
+         if (self%slot(i)%kernel%is_for(impact%face, mesh)) exit
+      end do
+      if (i > slots) then
+         call make_room(self)
+         i = self%newest
+         allocate (self%slot(i)%kernel)
+         call new_kernel(self%slot(i)%kernel, impact%face, mesh, error)
+         if (allocated(error)) return
+      end if
+      call march(impact, self%slot(i)%kernel, course, error)
+   end subroutine run
+
+   !> Make room for a kernel, by throwing away the oldest
+   pure subroutine make_room(self)
+      type(coupled_t), intent(inout) :: self
+
+      integer :: total, i, oldest
+
+      total = 0
+      do i = 1, slots
+         if (allocated(self%slot(i)%kernel)) total = total + self%slot(i)%kernel%numbers()
+      end do
+      self%newest = 1 + modulo(self%newest, slots)
+      do i = 0, slots - 1
+         oldest = 1 + modulo(self%newest + i - 1, slots)
+         if (.not. allocated(self%slot(oldest)%kernel)) cycle
+         if (i > 0 .and. total <= most_numbers) exit
+         total = total - self%slot(oldest)%kernel%numbers()
+         deallocate (self%slot(oldest)%kernel)
+      end do
+   end subroutine make_room
+
+   !> March on a mesh with half of its steps and with all, and extrapolate to none: the error is of
+   !> second order
+   subroutine solve_pair(self, impact, mesh, pair, error)
+      type(coupled_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      type(mesh_t), intent(in) :: mesh
+      type(pair_t), intent(out) :: pair
+      type(error_t), allocatable, intent(out) :: error
+
+      type(mesh_t) :: half
+      type(peak_t) :: one, two
+
+      half = mesh
+      half%steps = mesh%steps/2
+      call run(self, impact, half, pair%coarse, error)
+      if (allocated(error) .or. pair%coarse%status /= course_ended) return
+      call run(self, impact, mesh, pair%fine, error)
+      if (allocated(error) .or. pair%fine%status /= course_ended) return
+      associate (a => pair%coarse, b => pair%fine)
+         pair%contact_time = limit(a%contact_time, b%contact_time)
+         pair%cor = limit(a%cor(impact), b%cor(impact))
+         one = peak(a%force(0:a%steps), a%dt)
+         two = peak(b%force(0:b%steps), b%dt)
+         pair%max_force = limit(one%value, two%value)
+         pair%time_of_max_force = limit(one%time, two%time)
+         one = peak(a%z(0:a%steps), a%dt)
+         two = peak(b%z(0:b%steps), b%dt)
+         pair%depth = limit(one%value, two%value)
+         pair%time_of_depth = limit(one%time, two%time)
+      end associate
+   end subroutine solve_pair
+
+   !> Extrapolate to steps of no length
+   elemental function limit(coarse, fine)
+      !> Value with some steps
+      real(wp), intent(in) :: coarse
+      !> Value with twice as many
+      real(wp), intent(in) :: fine
+      real(wp) :: limit
+
+      limit = (4.0_wp*fine - coarse)/3.0_wp
+   end function limit
+
+   !> Largest value of a series: the top of a parabola fitted around it, as springs that come into
+   !> contact one by one make steps in the force
+   pure function peak(value, dt)
+      !> Values at equal steps, shape (0:)
+      real(wp), intent(in) :: value(0:)
+      !> Step [s]
+      real(wp), intent(in) :: dt
+      type(peak_t) :: peak
+
+      ! part of the series on each side, and part of the largest value, within which it is fitted
+      real(wp), parameter :: part = 0.025_wp, high = 0.95_wp
+      real(wp) :: second, slope, mean, square, fourth, top
+      integer :: middle, reach, most, i
+
+      middle = maxloc(value, 1) - 1
+      peak%value = value(middle)
+      peak%time = dt*real(middle, wp)
+      most = min(max(1, nint(part*real(size(value), wp))), middle, size(value) - 1 - middle)
+      do reach = most, 2, -1
+         if (min(value(middle - reach), value(middle + reach)) >= high*peak%value) exit
+      end do
+      reach = min(reach, most)
+      if (reach < 1) return
+      associate (y => value(middle - reach:middle + reach), n => real(reach, wp))
+         square = n*(n + 1.0_wp)*(2.0_wp*n + 1.0_wp)/3.0_wp
+         fourth = square*(3.0_wp*n**2 + 3.0_wp*n - 1.0_wp)/5.0_wp
+         mean = sum(y)/(2.0_wp*n + 1.0_wp)
+         slope = sum(y*[(real(i, wp), i=-reach, reach)])/square
+         second = sum(y*[(real(i, wp)**2, i=-reach, reach)]) - mean*square
+         second = second/(fourth - square**2/(2.0_wp*n + 1.0_wp))
+         if (.not. second < 0.0_wp) return
+         top = -0.5_wp*slope/second
+         if (abs(top) > n) return
+         peak%value = mean - second*square/(2.0_wp*n + 1.0_wp) + 0.5_wp*slope*top
+         peak%time = dt*(real(middle, wp) + top)
+      end associate
+   end function peak
+
+   !> Record the course of a contact that has ended, extrapolated at the nodes of the longer steps
+   subroutine record(pair, impact, trajectory)
+      type(pair_t), intent(in) :: pair
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer :: i, n
+
+      associate (a => pair%coarse, b => pair%fine)
+         n = count([(real(i, wp)*a%dt < pair%contact_time, i=1, min(a%steps - 1, (b%steps - 1)/2))])
+         call fill(trajectory, impact, a%dt, limit(a%force(0:n), b%force(0:2*n:2)), &
+            limit(a%z(0:n), b%z(0:2*n:2)), limit(a%velocity(0:n), b%velocity(0:2*n:2)))
+         trajectory%steps = a%steps + b%steps
+         trajectory%contact_radius = maxval(b%radius)
+         ! the end, with the impulse of the whole contact
+         n = n + 1
+         trajectory%last = n
+         trajectory%final = n
+         associate (end => trajectory%state(:, n))
+            end = unset
+            end(col_time) = pair%contact_time
+            end(col_force) = 0.0_wp
+            end(col_sphere_velocity) = -pair%cor*impact%velocity
+            end(col_impulse) = impact%mass*(impact%free_velocity(pair%contact_time) &
+               + pair%cor*impact%velocity)
+            end(col_sphere) = limit(a%z(a%steps), b%z(b%steps))
+            end(col_indentation) = end(col_sphere)
+            end(col_velocity) = end(col_sphere_velocity)
+         end associate
+      end associate
+      call share_impulse(trajectory)
+      trajectory%status = contact_separated
+      trajectory%max_indentation = pair%depth
+      trajectory%time_of_max_indentation = pair%time_of_depth
+      trajectory%max_force = pair%max_force
+      trajectory%time_of_max_force = pair%time_of_max_force
+   end subroutine record
+
+   !> Record the course of a contact that has not ended
+   subroutine record_contact(course, impact, trajectory)
+      type(course_t), intent(in) :: course
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(inout) :: trajectory
+
+      type(peak_t) :: top
+
+      associate (n => course%steps)
+         call fill(trajectory, impact, course%dt, course%force(0:n), course%z(0:n), &
+            course%velocity(0:n))
+         trajectory%steps = n
+         trajectory%last = n
+         trajectory%final = n
+         trajectory%status = contact_lasting
+         if (course%rests(impact%mass*impact%gravity)) trajectory%status = contact_resting
+         top = peak(course%force(0:n), course%dt)
+         trajectory%max_force = top%value
+         trajectory%time_of_max_force = top%time
+         top = peak(course%z(0:n), course%dt)
+         trajectory%max_indentation = top%value
+         trajectory%time_of_max_indentation = top%time
+         trajectory%contact_radius = maxval(course%radius)
+      end associate
+      call share_impulse(trajectory)
+   end subroutine record_contact
+
+   !> Record equal steps. The plate has no displacement apart from the indentation: both are the
+   !> approach of the sphere to the undisturbed face
+   subroutine fill(trajectory, impact, dt, force, z, velocity)
+      type(trajectory_t), intent(inout) :: trajectory
+      type(impact_t), intent(in) :: impact
+      !> Step [s]
+      real(wp), intent(in) :: dt
+      !> Force [N], displacement [m] and velocity of the sphere [m/s], shape (0:n)
+      real(wp), intent(in) :: force(0:), z(0:), velocity(0:)
+
+      integer :: i, n
+
+      n = ubound(force, 1)
+      call trajectory%reserve(n + 1)
+      trajectory%state = unset
+      do i = 0, n
+         trajectory%state(col_time, i) = real(i, wp)*dt
+         trajectory%state(col_force, i) = max(0.0_wp, force(i))
+         trajectory%state(col_sphere, i) = z(i)
+         trajectory%state(col_sphere_velocity, i) = velocity(i)
+         trajectory%state(col_impulse, i) = impact%mass &
+            *(impact%free_velocity(real(i, wp)*dt) - velocity(i))
+      end do
+      trajectory%state(col_indentation, :) = trajectory%state(col_sphere, :)
+      trajectory%state(col_velocity, :) = trajectory%state(col_sphere_velocity, :)
+   end subroutine fill
+
+   !> Share the impulse of each step among its ends. Forces would do worse: they may begin as the
+   !> square root of time
+   pure subroutine share_impulse(trajectory)
+      type(trajectory_t), intent(inout) :: trajectory
+
+      associate (n => trajectory%last, impulse => trajectory%state(col_impulse, :))
+         trajectory%share(0:n - 1) = 0.5_wp*(impulse(2:n + 1) - impulse(1:n))
+         trajectory%share(n) = 0.0_wp
+         trajectory%share(1:n) = trajectory%share(1:n) + 0.5_wp*(impulse(2:n + 1) - impulse(1:n))
+      end associate
+   end subroutine share_impulse
+
+   !> Number of steps of a level as text of fixed length, for threads
+   pure function steps_text(level) result(text)
+      !> Level, from 0
+      integer, intent(in) :: level
+      !> Text such as 1280
+      character(len=4) :: text
+
+      write (text, '(i4)') first_steps*2**level
+   end function steps_text
+
+   !> A number as text of fixed length, for threads
+   pure function as_text(number) result(text)
+      !> The number, > 0
+      real(wp), intent(in) :: number
+      !> Text such as 1.0E-08
+      character(len=7) :: text
+
+      write (text, '(es7.1)') number
+   end function as_text
+
+end module vcor_solver_coupled

@@ -1,0 +1,257 @@
+!> Response of a face as weights of convolution quadrature on a row of springs: a local part on the
+!> springs, 1/Q', and a smooth part on the hats, (L - 1)/Q' and what moves as a whole
+!>
+!> No mass, shape, velocity or gravity is in it, so that impacts share it. Quadrature in k is by
+!> panels of Gauss nodes, one grid for all frequencies: a node that depends on the frequency would
+!> make an error that is not smooth in it, which the weights of late steps amplify.
+module vcor_solver_coupled_kernel
+   use vcor_error, only : error_t
+   use vcor_impact_face, only : base_free, face_t
+   use vcor_kinds, only : pi, wp
+   use vcor_numeric_quadrature, only : gauss_nodes
+   use vcor_solver_coupled_row, only : new_row, row_t, transforms
+   use vcor_solver_coupled_rule, only : nodes, weights
+   implicit none
+   private
+
+   public :: kernel_t, new_kernel, mesh_t
+
+   !> Steps, springs and hats of a march
+   type :: mesh_t
+      !> Number of steps, a multiple of 4
+      integer :: steps = 0
+      !> Least number of springs
+      integer :: springs = 0
+      !> Number of hats, > 1
+      integer :: hats = 0
+      !> Duration of all steps [s], > 0
+      real(wp) :: window = 0.0_wp
+      !> Radius of the row of springs [m], > 0
+      real(wp) :: radius = 0.0_wp
+   end type mesh_t
+
+   !> Response of a face on a mesh
+   type :: kernel_t
+      type(mesh_t) :: mesh
+      !> Springs and hats
+      type(row_t) :: row
+      !> Weights of the springs, shape (0:steps-1) [m/N per m]
+      real(wp), allocatable :: local(:)
+      !> Whether the springs remember: more than their first weight counts
+      logical :: remembers = .false.
+      !> Whether hats act on each other
+      logical :: has_response = .false.
+      !> First weights of the hats, shape (hats, hats) [m/N]
+      real(wp), allocatable :: now(:, :)
+      !> Later weights of the hats [m/N], that of lag n from hat j to hat i at
+      !> (j + hats (steps - 1 - n), i), shape (hats (steps - 1), hats)
+      real(wp), allocatable :: later(:, :)
+      !> What the face is: its base, Poisson's ratio, thickness and moduli at all frequencies
+      integer, private :: base = -1
+      logical, private :: has_waves = .false.
+      real(wp), private :: poisson_ratio = 0.0_wp, thickness = 0.0_wp
+      complex(wp), allocatable, private :: modulus(:), compliance(:), p(:)
+   contains
+      procedure :: is_for
+      procedure :: numbers
+   end type kernel_t
+
+contains
+
+   !> Whether the kernel is that of a face on a mesh
+   function is_for(self, face, mesh) result(yes)
+      class(kernel_t), intent(in) :: self
+      type(face_t), intent(in) :: face
+      type(mesh_t), intent(in) :: mesh
+      logical :: yes
+
+      complex(wp) :: s(0:mesh%steps/2)
+
+      yes = self%mesh%steps == mesh%steps .and. self%mesh%springs == mesh%springs &
+         .and. self%mesh%hats == mesh%hats .and. self%base == face%base &
+         .and. (self%has_waves .eqv. face%has_waves) &
+         .and. .not. abs(self%mesh%window - mesh%window) > 0.0_wp &
+         .and. .not. abs(self%mesh%radius - mesh%radius) > 0.0_wp &
+         .and. .not. abs(self%poisson_ratio - face%poisson_ratio()) > 0.0_wp &
+         .and. .not. abs(self%thickness - face%thickness) > 0.0_wp
+      if (.not. yes) return
+      s = nodes(mesh%steps, mesh%window/real(mesh%steps, wp))
+      yes = all(abs(self%modulus - face%plate_modulus(s)) <= 0.0_wp) &
+         .and. all(abs(self%compliance - face%local_compliance(s)) <= 0.0_wp) &
+         .and. all(abs(self%p - face%per_shear_speed(s)) <= 0.0_wp)
+   end function is_for
+
+   !> Size of the kernel in real numbers
+   pure function numbers(self)
+      class(kernel_t), intent(in) :: self
+      integer :: numbers
+
+      numbers = self%mesh%steps*(self%mesh%hats**2 + 8) + 8*self%row%springs
+   end function numbers
+
+   !> Build the kernel of a face on a mesh
+   subroutine new_kernel(self, face, mesh, error)
+      type(kernel_t), intent(out) :: self
+      type(face_t), intent(in) :: face
+      type(mesh_t), intent(in) :: mesh
+      !> Error of code `error_internal`
+      type(error_t), allocatable, intent(out) :: error
+
+      ! the part of the first weight from which the springs are elastic
+      real(wp), parameter :: negligible = 1.0e-7_wp
+      complex(wp) :: s(0:mesh%steps/2)
+      real(wp) :: parts(1, 2*(mesh%steps/2 + 1)), found(1, mesh%steps)
+      real(wp), allocatable :: transform(:, :)
+
+      self%mesh = mesh
+      self%base = face%base
+      self%has_waves = face%has_waves
+      self%poisson_ratio = face%poisson_ratio()
+      self%thickness = face%thickness
+      s = nodes(mesh%steps, mesh%window/real(mesh%steps, wp))
+      self%modulus = face%plate_modulus(s)
+      self%compliance = face%local_compliance(s)
+      self%p = face%per_shear_speed(s)
+      call new_row(self%row, mesh%radius, mesh%hats, mesh%springs)
+      transform = weights(mesh%steps)
+      parts(1, 1::2) = real(self%compliance, wp)
+      parts(1, 2::2) = aimag(self%compliance)
+      found = matmul(parts, transform)
+      allocate (self%local(0:mesh%steps - 1), source=found(1, :))
+      self%remembers = any(abs(self%local(1:)) > negligible*self%local(0))
+      call add_response(self, face, s, transform, error)
+   end subroutine new_kernel
+
+   !> Weights of the hats
+   subroutine add_response(self, face, s, transform, error)
+      type(kernel_t), intent(inout) :: self
+      type(face_t), intent(in) :: face
+      !> Laplace variables [1/s], shape (0:steps/2)
+      complex(wp), intent(in) :: s(0:)
+      !> Matrix of the inverse transform, of `weights`
+      real(wp), intent(in) :: transform(:, 0:)
+      type(error_t), allocatable, intent(out) :: error
+
+      complex(wp), allocatable :: excess(:)
+      real(wp), allocatable :: k(:), weight(:), dual(:, :), pairs(:, :), parts(:, :), found(:, :)
+      complex(wp) :: value
+      integer :: hats, steps, i, j, l, n
+
+      hats = self%mesh%hats
+      steps = self%mesh%steps
+      allocate (self%now(hats, hats), source=0.0_wp)
+      allocate (found(hats*(hats + 1)/2, 2*size(s)), source=0.0_wp)
+      if (face%has_response()) then
+         call wavenumbers(face, self%p, self%mesh%radius, self%row%node(2), k, weight)
+         allocate (dual(hats, size(k)), excess(size(k)), pairs(size(found, 1), size(k)), &
+            parts(size(k), 2*size(s)))
+         call transforms(self%row%node, k, dual, error)
+         if (allocated(error)) return
+         do i = 1, size(k)
+            n = 0
+            do j = 1, hats
+               pairs(n + 1:n + j, i) = dual(:j, i)*(dual(j, i)*weight(i)/pi)
+               n = n + j
+            end do
+         end do
+         do l = 0, size(s) - 1
+            if (l == 0 .or. face%has_waves) call face%response(k, self%p(l + 1), &
+               excess)
+            parts(:, 2*l + 1) = real(excess, wp)
+            parts(:, 2*l + 2) = aimag(excess)
+         end do
+         found = matmul(pairs, parts)
+         do l = 0, size(s) - 1
+            do n = 1, size(found, 1)
+               value = cmplx(found(n, 2*l + 1), found(n, 2*l + 2), wp)/self%modulus(l + 1)
+               found(n, 2*l + 1) = real(value, wp)
+               found(n, 2*l + 2) = aimag(value)
+            end do
+         end do
+      end if
+      do l = 0, size(s) - 1
+         value = face%drift(s(l))
+         found(:, 2*l + 1) = found(:, 2*l + 1) + real(value, wp)
+         found(:, 2*l + 2) = found(:, 2*l + 2) + aimag(value)
+      end do
+      self%has_response = any(abs(found) > 0.0_wp)
+      if (.not. self%has_response) return
+      parts = matmul(found, transform)
+      allocate (self%later(hats*(steps - 1), hats))
+      n = 0
+      do j = 1, hats
+         do i = 1, j
+            n = n + 1
+            self%now(i, j) = parts(n, 1)
+            self%now(j, i) = parts(n, 1)
+            do l = 1, steps - 1
+               self%later(i + hats*(steps - 1 - l), j) = parts(n, l + 1)
+               self%later(j + hats*(steps - 1 - l), i) = parts(n, l + 1)
+            end do
+         end do
+      end do
+   end subroutine add_response
+
+   !> Nodes and weights of the quadrature in k: panels of Gauss nodes, short where the response of
+   !> any frequency has a pole nearby, where a layer resonates, and against the waves cos(ka)
+   pure subroutine wavenumbers(face, p, radius, finest, k, weight)
+      type(face_t), intent(in) :: face
+      !> Laplace variables over the speed of shear waves [1/m]
+      complex(wp), intent(in) :: p(:)
+      !> Radius of the row a [m]
+      real(wp), intent(in) :: radius
+      !> Length of the shortest element of the hats [m]
+      real(wp), intent(in) :: finest
+      !> Wavenumbers [1/m]
+      real(wp), allocatable, intent(out) :: k(:)
+      !> Weights [1/m]
+      real(wp), allocatable, intent(out) :: weight(:)
+
+      integer, parameter :: order = 10
+      real(wp) :: node(order), share(order), start, length, least, last
+
+      call gauss_nodes(node, share)
+      last = max(5.0_wp/finest, 20.0_wp/radius)
+      if (face%has_waves) then
+         least = minval(abs(p))
+      else
+         least = 1.0_wp/face%thickness
+      end if
+      allocate (k(0), weight(0))
+      start = 0.0_wp
+      do while (start < last)
+         length = min(6.0_wp/radius, 0.7_wp*max(start, least))
+         if (.not. start > 0.0_wp) length = min(length, 0.5_wp*least)
+         if (face%thickness > 0.0_wp .and. start*face%thickness < 25.0_wp) &
+            length = min(length, 1.5_wp/face%thickness)
+         if (face%has_waves .and. start > 0.0_wp) length = min(length, clearance(start))
+         k = [k, start + length*node]
+         weight = [weight, length*share]
+         start = start + length
+      end do
+
+   contains
+
+      !> Length that the poles of shear, Rayleigh and bending waves near a wavenumber allow
+      pure function clearance(k) result(length)
+         !> Wavenumber [1/m], > 0
+         real(wp), intent(in) :: k
+         real(wp) :: length
+
+         real(wp) :: wave
+         integer :: l
+
+         length = huge(1.0_wp)
+         do l = 1, size(p)
+            wave = abs(p(l))
+            if (wave > 0.8_wp*k .and. wave < 2.2_wp*k) &
+               length = min(length, 0.77_wp*real(p(l), wp)*min(1.0_wp, k/wave))
+            if (face%base /= base_free) cycle
+            wave = (6.0_wp*(1.0_wp - face%poisson_ratio()))**0.25_wp*sqrt(wave/face%thickness)
+            if (wave*face%thickness < 2.5_wp .and. wave > 0.75_wp*k .and. wave < 1.3_wp*k) &
+               length = min(length, 0.54_wp*k*real(p(l), wp)/abs(p(l)))
+         end do
+      end function clearance
+   end subroutine wavenumbers
+
+end module vcor_solver_coupled_kernel

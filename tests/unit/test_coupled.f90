@@ -1,0 +1,652 @@
+!> The coupled contact: limits in which it is known, references, honesty and independence of meshes
+program test_coupled
+   use vcor_error, only : error_numerical, error_t
+   use vcor_impact_contact, only : new_contact_modulus, pair_series
+   use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, base_thin, &
+      face_t, new_face
+   use vcor_impact_law, only : cone_factor, new_contact_law, punch_factor
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_plate, only : waves_none
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_response, only : static_response, wave_response
+   use vcor_impact_trajectory, only : col_force, col_sphere, col_sphere_velocity, col_time, &
+      contact_lasting, contact_resting, contact_separated, trajectory_t
+   use vcor_kinds, only : pi, wp
+   use vcor_material_power_law, only : new_power_law, power_law_t
+   use vcor_material_prony, only : new_elastic, new_prony, new_rigid, prony_t
+   use vcor_material_type, only : material_t
+   use vcor_solver_coupled, only : coupled_t, new_coupled
+   use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
+   use vcor_solver_coupled_march, only : course_ended, course_t, march
+   use vcor_solver_ive, only : ive_t
+   use vcor_solver_type, only : default_accuracy, solver_settings_t
+   use vcor_test, only : check, check_close, check_relative, finish, suite
+   use vcor_test_cases, only : make_ive, random_t, refused, rigid_on_plate, &
+      run, success
+   implicit none
+
+   !> What a result promises by default
+   real(wp), parameter :: accuracy = 1.0e-5_wp
+
+   call suite("coupled")
+   call test_response()
+   call test_limits_of_response()
+   call test_references()
+   call test_elastic()
+   call test_static()
+   call test_zener()
+   call test_thin_plate()
+   call test_half_space_loss()
+   call test_passive()
+   call test_meshes()
+   call test_sharing()
+   call test_punch()
+   call test_gravity()
+   call test_no_end()
+   call test_refusals()
+   call finish()
+
+contains
+
+   !> L - 1 against the equations of motion and the conditions on both sides of the layer.
+   !> Potentials f of dilatation, f'' = a^2 f, and g of shear, g'' = b^2 g, have the displacements f' + k g
+   !> along z and -k f - g' along r, and the stresses mu ((k^2 + b^2) f + 2 k g') and
+   !> mu (-2 k f' - (k^2 + b^2) g)
+   subroutine test_response()
+      ! the system has waves that grow and decay over the layer
+      real(wp), parameter :: tolerance = 1.0e-9_wp
+      integer, parameter :: bases(4) = [base_half_space, base_free, base_bonded, base_sliding]
+      type(random_t) :: random
+      complex(wp) :: p, matrix(4, 4), right(4), expected, face(4)
+      real(wp) :: k, nu, thickness, q
+      complex(wp) :: a, b
+      integer :: i, j
+
+      do i = 1, 200
+         do j = 1, size(bases)
+            k = random%log_between(0.3_wp, 5.0_wp)
+            thickness = random%log_between(0.3_wp, 1.5_wp)
+            nu = random%between(-0.5_wp, 0.5_wp)
+            p = random%log_between(0.2_wp, 5.0_wp)*exp(cmplx(0.0_wp, random%between(-1.5_wp, &
+               1.5_wp), wp))
+            q = (1.0_wp - 2.0_wp*nu)/(2.0_wp*(1.0_wp - nu))
+            a = sqrt(k**2 + q*p**2)
+            b = sqrt(k**2 + p**2)
+            ! f and g are sums of exp(-a z) and exp(-b z) from the face and, the last two, from the
+            ! bottom; face: displacement, then rows: stresses of the face, conditions at the bottom
+            face = [-a, cmplx(k, 0.0_wp, wp), a*exp(-a*thickness), k*exp(-b*thickness)]
+            matrix(1, :) = [k**2 + b**2, -2.0_wp*k*b, (k**2 + b**2)*exp(-a*thickness), &
+               2.0_wp*k*b*exp(-b*thickness)]
+            matrix(2, :) = [2.0_wp*k*a, -(k**2 + b**2), -2.0_wp*k*a*exp(-a*thickness), &
+               -(k**2 + b**2)*exp(-b*thickness)]
+            associate (ea => exp(-a*thickness), eb => exp(-b*thickness), s => k**2 + b**2)
+               select case (bases(j))
+               case (base_half_space)
+                  matrix(3, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp]
+                  matrix(4, :) = [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp]
+               case (base_free)
+                  matrix(3, :) = [s*ea, -2.0_wp*k*b*eb, s, 2.0_wp*k*b]
+                  matrix(4, :) = [2.0_wp*k*a*ea, -s*eb, -2.0_wp*k*a, -s]
+               case (base_bonded)
+                  matrix(3, :) = [-a*ea, k*eb, a, cmplx(k, 0.0_wp, wp)]
+                  matrix(4, :) = [-k*ea, b*eb, cmplx(-k, 0.0_wp, wp), -b]
+               case default
+                  matrix(3, :) = [-a*ea, k*eb, a, cmplx(k, 0.0_wp, wp)]
+                  matrix(4, :) = [2.0_wp*k*a*ea, -s*eb, -2.0_wp*k*a, -s]
+               end select
+            end associate
+            right = [-1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+            call solve_complex(matrix, right)
+            expected = k/(1.0_wp - nu)*sum(face*right) - 1.0_wp
+            call check(abs(wave_response(bases(j), nu, thickness, k, p) - expected) &
+               <= tolerance*(1.0_wp + abs(expected)), "L meets the conditions of the layer")
+         end do
+      end do
+   end subroutine test_response
+
+   !> Solve a complex system by elimination with pivots
+   subroutine solve_complex(matrix, right)
+      !> The matrix, destroyed on return
+      complex(wp), intent(inout) :: matrix(:, :)
+      !> Right-hand side, on return the solution
+      complex(wp), intent(inout) :: right(:)
+
+      complex(wp) :: row(size(right)), value
+      integer :: i, j, pivot
+
+      do i = 1, size(right)
+         pivot = i - 1 + maxloc(abs(matrix(i:, i)), 1)
+         row = matrix(i, :)
+         matrix(i, :) = matrix(pivot, :)
+         matrix(pivot, :) = row
+         value = right(i)
+         right(i) = right(pivot)
+         right(pivot) = value
+         do j = i + 1, size(right)
+            value = matrix(j, i)/matrix(i, i)
+            matrix(j, :) = matrix(j, :) - value*matrix(i, :)
+            right(j) = right(j) - value*right(i)
+         end do
+      end do
+      do i = size(right), 1, -1
+         right(i) = (right(i) - sum(matrix(i, i + 1:)*right(i + 1:)))/matrix(i, i)
+      end do
+   end subroutine solve_complex
+
+   !> Thick layers are half spaces, slow waves are none, and small differences keep their digits
+   subroutine test_limits_of_response()
+      real(wp), parameter :: digits = 1.0e-10_wp, slow = 1.0e-5_wp
+      complex(wp), parameter :: p = (0.3_wp, 2.0_wp)
+      real(wp), parameter :: nu = 0.35_wp
+      complex(wp) :: half_space
+      real(wp) :: y
+      integer :: base
+
+      half_space = wave_response(base_half_space, nu, 0.0_wp, 1.3_wp, p)
+      do base = base_free, base_sliding
+         call check(abs(wave_response(base, nu, 300.0_wp, 1.3_wp, p) - half_space) <= digits, &
+            "a thick layer is a half space")
+      end do
+      do base = base_bonded, base_sliding
+         call check_close(real(wave_response(base, nu, 1.0_wp, 1.3_wp, cmplx(slow, 0.0_wp, &
+            wp)), wp), static_response(base, nu, 1.3_wp), 10.0_wp*slow**2, "slow waves are none")
+      end do
+      call check_close(static_response(base_bonded, nu, 0.0_wp), -1.0_wp, digits, &
+         "a layer that is bonded does not give way to a uniform pressure at rest")
+      ! L - 1 = -y (3 - 4 q + 3 q^2)/(4 (1 - q)) + O(y^2), q = 3/13
+      y = 1.0e-12_wp
+      call check_relative(real(wave_response(base_half_space, nu, 0.0_wp, 1.0_wp, &
+         cmplx(sqrt(y), 0.0_wp, wp)), wp), -y*(3.0_wp - 12.0_wp/13.0_wp + 27.0_wp/169.0_wp) &
+         /(40.0_wp/13.0_wp), digits, "a small difference from the half space at rest")
+   end subroutine test_limits_of_response
+
+   !> A ball, a plate and what strikes it otherwise
+   subroutine make_impact(impact, plate, base, thickness, velocity, mass, factor, exponent, &
+                          has_waves, striker, gravity)
+      type(impact_t), intent(out) :: impact
+      !> Material with density and Poisson's ratio
+      class(material_t), intent(in) :: plate
+      !> One of the `base_*` constants
+      integer, intent(in) :: base
+      !> Thickness [m]; 0 for a half space
+      real(wp), intent(in) :: thickness
+      !> Velocity [m/s], mass [kg] and factor K of the shape
+      real(wp), intent(in) :: velocity, mass, factor
+      !> Exponent of the law; absent: Hertz's
+      real(wp), intent(in), optional :: exponent
+      !> Whether the plate has inertia; absent: it has
+      logical, intent(in), optional :: has_waves
+      !> Material of the striker; absent: rigid
+      class(material_t), intent(in), optional :: striker
+      !> Gravity [m/s2]; absent: 0
+      real(wp), intent(in), optional :: gravity
+
+      class(material_t), allocatable :: other
+      type(prony_t) :: rigid
+      type(error_t), allocatable :: error
+      logical :: waves
+
+      call new_rigid(rigid)
+      if (present(striker)) then
+         allocate (other, source=striker)
+      else
+         allocate (other, source=rigid)
+      end if
+      waves = .true.
+      if (present(has_waves)) waves = has_waves
+      call new_contact_modulus(impact%modulus, other, plate, .false., error, pair_series)
+      if (.not. allocated(error)) call new_face(impact%face, plate, other, base, thickness, waves, &
+         error)
+      if (present(exponent) .and. .not. allocated(error)) &
+         call new_contact_law(impact%law, exponent, .false., error)
+      if (.not. allocated(error)) call impact%launch(velocity, mass, factor, error, gravity)
+      if (allocated(error)) call success(error, "an impact is built")
+   end subroutine make_impact
+
+   !> An elastic or Prony material
+   function solid(equilibrium, moduli, rates, density, poisson_ratio) result(material)
+      !> Moduli [Pa], rates [1/s], density [kg/m3] and Poisson's ratio
+      real(wp), intent(in) :: equilibrium, moduli(:), rates(:), density, poisson_ratio
+      type(prony_t) :: material
+
+      type(error_t), allocatable :: error
+
+      call new_prony(material, equilibrium, moduli, rates, 0.0_wp, error)
+      call material%set_constants(error, density=density, poisson_ratio=poisson_ratio)
+   end function solid
+
+   !> The paper's rubber
+   function rubber(poisson_ratio) result(material)
+      !> Poisson's ratio
+      real(wp), intent(in) :: poisson_ratio
+      type(prony_t) :: material
+
+      material = solid(3.75e6_wp, [11.25e6_wp], [1200.0_wp], 1100.0_wp, poisson_ratio)
+   end function rubber
+
+   !> Factor of a sphere
+   pure function sphere(radius) result(factor)
+      !> Radius [m]
+      real(wp), intent(in) :: radius
+      real(wp) :: factor
+
+      factor = 4.0_wp/3.0_wp*sqrt(radius)
+   end function sphere
+
+   !> Solve an impact by a new solver
+   subroutine solve(impact, trajectory, asked)
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(out) :: trajectory
+      !> Accuracy asked for; absent: the default
+      real(wp), intent(in), optional :: asked
+
+      type(coupled_t), allocatable :: solver
+      type(solver_settings_t) :: settings
+      type(error_t), allocatable :: error
+
+      if (present(asked)) settings%accuracy = asked
+      allocate (solver)
+      call new_coupled(solver, settings)
+      call solver%solve(impact, trajectory, error)
+      if (allocated(error)) call success(error, "an impact is solved")
+   end subroutine solve
+
+   !> Coefficient of restitution of the sphere
+   pure function cor_of(impact, trajectory) result(cor)
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(in) :: trajectory
+      real(wp) :: cor
+
+      cor = -trajectory%state(col_sphere_velocity, trajectory%last)/impact%velocity
+   end function cor_of
+
+   !> Check a coefficient within three times its stated error, and within the default accuracy
+   subroutine check_cor(impact, trajectory, expected, what)
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(in) :: trajectory
+      !> Coefficient
+      real(wp), intent(in) :: expected
+      !> What is checked
+      character(len=*), intent(in) :: what
+
+      ! last digit of the references
+      real(wp), parameter :: rounding = 1.0e-7_wp
+
+      call check(trajectory%status == contact_separated, what//": the bodies separate")
+      call check(trajectory%cor_sphere_error <= accuracy, what//": to the accuracy asked for")
+      call check_close(cor_of(impact, trajectory), expected, &
+         min(accuracy, 3.0_wp*trajectory%cor_sphere_error) + rounding, what)
+   end subroutine check_cor
+
+   !> Impacts solved to 7 digits by a program with another discretisation, and partly checked by
+   !> finite elements (tests/reference/coupled_elements.py)
+   subroutine test_references()
+      real(wp), parameter :: steel_ball = 0.0326725635973338_wp, none(0) = 0.0_wp
+      type(impact_t) :: impact
+      type(prony_t) :: steel
+      type(power_law_t) :: fractional
+      type(error_t), allocatable :: error
+
+      call make_impact(impact, solid(70.0e9_wp, none, none, 2500.0_wp, 0.22_wp), base_free, &
+         0.004_wp, 1.0_wp, 0.0002613805087786708_wp, sphere(0.002_wp))
+      call expect(impact, 0.82696409_wp, 1.67211e-5_wp, 52.7954_wp, "a ball on 4 mm of glass")
+      steel = solid(210.0e9_wp, none, none, 7800.0_wp, 0.3_wp)
+      call make_impact(impact, steel, base_half_space, 0.0_wp, 3.0_wp, steel_ball, &
+         sphere(0.01_wp), striker=steel)
+      call expect(impact, 0.99357683_wp, 5.537e-5_wp, 6491.95_wp, "an elastic ball on steel")
+      call make_impact(impact, solid(2.6e9_wp, [0.5e9_wp, 0.9e9_wp], [3.0e4_wp, 4.0e5_wp], &
+         1180.0_wp, 0.35_wp), base_free, 0.003_wp, 1.0_wp, 1.0471975511965977e-5_wp, &
+         sphere(0.001_wp))
+      call expect(impact, 0.77433907_wp, 1.69024e-5_wp, 2.03713_wp, "a bead on 3 mm of PMMA")
+      call make_impact(impact, rubber(0.5_wp), base_free, 0.04_wp, 2.0_wp, steel_ball, &
+         sphere(0.01_wp))
+      call expect(impact, 0.40181876_wp, 1.94335e-3_wp, 89.7197_wp, "the paper's rubber, 2 m/s")
+      call make_impact(impact, rubber(0.5_wp), base_free, 0.04_wp, 10.0_wp, steel_ball, &
+         sphere(0.01_wp))
+      call expect(impact, 0.38090382_wp, 1.36734e-3_wp, 625.669_wp, "the paper's own impact")
+      call make_impact(impact, rubber(0.5_wp), base_bonded, 0.01_wp, 2.0_wp, steel_ball, &
+         sphere(0.01_wp))
+      call expect(impact, 0.61184068_wp, 1.61161e-3_wp, 127.66_wp, "10 mm bonded to a floor")
+      call make_impact(impact, rubber(0.48_wp), base_sliding, 0.01_wp, 2.0_wp, steel_ball, &
+         sphere(0.01_wp))
+      call expect(impact, 0.58138785_wp, 1.767e-3_wp, 0.0_wp, "10 mm sliding on a floor")
+      call new_power_law(fractional, 2.0e6_wp, 0.3e6_wp, 0.3_wp, error)
+      call fractional%set_constants(error, density=1100.0_wp, poisson_ratio=0.45_wp)
+      call make_impact(impact, fractional, base_free, 0.02_wp, 2.0_wp, steel_ball, sphere(0.01_wp))
+      call expect(impact, 0.23481215_wp, 3.62165e-3_wp, 47.3033_wp, "20 mm of a power law")
+      call make_impact(impact, rubber(0.45_wp), base_half_space, 0.0_wp, 1.0_wp, 0.03_wp, &
+         cone_factor(60.0_wp), exponent=2.0_wp)
+      call expect(impact, 0.4555351_wp, 3.99527e-3_wp, 23.9918_wp, "a cone on a half space")
+   end subroutine test_references
+
+   !> Check the impact
+   subroutine expect(impact, cor, contact_time, max_force, what)
+      type(impact_t), intent(in) :: impact
+      !> Coefficient, contact time [s] and largest force [N], 0: unknown
+      real(wp), intent(in) :: cor, contact_time, max_force
+      !> Its name
+      character(len=*), intent(in) :: what
+
+      type(trajectory_t) :: trajectory
+
+      call solve(impact, trajectory)
+      call check_cor(impact, trajectory, cor, what)
+      call check_relative(trajectory%state(col_time, trajectory%last), contact_time, 2.0e-3_wp, &
+         what//": contact time")
+      if (max_force > 0.0_wp) call check_relative(trajectory%max_force, max_force, 1.0e-3_wp, &
+         what//": largest force")
+      call check_close(sum(trajectory%share(0:trajectory%last) &
+         *trajectory%state(col_sphere_velocity, 0:trajectory%last)), impact%initial_energy() &
+         *(1.0_wp - cor**2), accuracy*impact%initial_energy(), what//": energy")
+   end subroutine expect
+
+   !> An elastic contact without inertia loses nothing, and lasts as long as Hertz says
+   subroutine test_elastic()
+      real(wp), parameter :: none(0) = 0.0_wp, exponent(3) = [1.5_wp, 2.0_wp, 1.25_wp]
+      real(wp), parameter :: factor(3) = [0.13_wp, 1.0_wp, 0.05_wp]
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      integer :: i
+
+      do i = 1, size(exponent)
+         call make_impact(impact, solid(1.0e7_wp, none, none, 1100.0_wp, 0.3_wp), base_half_space, &
+            0.0_wp, 2.0_wp, 0.03_wp, factor(i), exponent(i), has_waves=.false.)
+         call solve(impact, trajectory)
+         call check_cor(impact, trajectory, 1.0_wp, "an elastic contact at rest loses nothing")
+         call check_relative(trajectory%state(col_time, trajectory%last), &
+            impact%law%contact_time*impact%time_scale(1.0e-10_wp), 1.0e-3_wp, "its contact time")
+      end do
+   end subroutine test_elastic
+
+   !> Without inertia it is Ting's contact, by a solver that knows no rule of Ting
+   subroutine test_static()
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(ive_t) :: ive
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      real(wp) :: mass
+
+      call rigid_on_plate(rubber(0.5_wp), waves_none, 2.0_wp, impact)
+      call new_contact_law(impact%law, 1.5_wp, .true., error)
+      call make_ive(1.0e-9_wp, ive)
+      call run(ive, impact, outcome)
+      mass = impact%mass
+      call make_impact(impact, rubber(0.5_wp), base_half_space, 0.0_wp, 2.0_wp, mass, &
+         sphere(0.01_wp), has_waves=.false.)
+      call solve(impact, trajectory)
+      call check_cor(impact, trajectory, outcome%cor_sphere, "receding contact")
+      call check_relative(trajectory%max_force, outcome%max_force, 1.0e-3_wp, &
+         "receding contact: force")
+      call check_relative(trajectory%contact_radius, sqrt(0.01_wp*outcome%max_indentation), &
+         1.0e-3_wp, "receding contact: radius")
+   end subroutine test_static
+
+   !> Zener's plate: an elastic impact depends on lambda = alpha m/T alone
+   subroutine test_zener()
+      real(wp), parameter :: lambda(3) = [0.05_wp, 0.2_wp, 1.0_wp], none(0) = 0.0_wp
+      real(wp), parameter :: cor(3) = [0.917771501790_wp, 0.714044879992_wp, 0.184122874165_wp]
+      type(prony_t) :: glass
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      real(wp) :: alpha, thickness
+      integer :: i
+
+      glass = solid(70.0e9_wp, none, none, 2500.0_wp, 0.22_wp)
+      do i = 1, size(lambda)
+         call make_impact(impact, glass, base_half_space, 0.0_wp, 1.0_wp, 2.6e-4_wp, &
+            sphere(0.002_wp), has_waves=.false.)
+         alpha = lambda(i)*impact%time_scale(1.0e-12_wp)/impact%mass
+         thickness = sqrt(sqrt(3.0_wp*(1.0_wp - 0.22_wp**2)/(70.0e9_wp*2500.0_wp))/(4.0_wp*alpha))
+         call make_impact(impact, glass, base_thin, thickness, 1.0_wp, 2.6e-4_wp, &
+            sphere(0.002_wp), has_waves=.false.)
+         call solve(impact, trajectory)
+         call check_cor(impact, trajectory, cor(i), "Zener's plate")
+      end do
+   end subroutine test_zener
+
+   !> A plate that is thin against the waves is Zener's: the loss that his theory leaves out falls
+   !> as the thickness over the way of the waves during the contact
+   subroutine test_thin_plate()
+      real(wp), parameter :: none(0) = 0.0_wp, thickness = 0.002_wp
+      real(wp), parameter :: velocity(2) = [0.5_wp, 0.5_wp/8.0_wp]
+      type(prony_t) :: glass
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      real(wp) :: exact, missing(2)
+      integer :: i
+
+      glass = solid(70.0e9_wp, none, none, 2500.0_wp, 0.22_wp)
+      do i = 1, size(velocity)
+         call make_impact(impact, glass, base_free, thickness, velocity(i), 2.6e-4_wp, &
+            sphere(0.002_wp))
+         call solve(impact, trajectory)
+         exact = cor_of(impact, trajectory)
+         call make_impact(impact, glass, base_thin, thickness, velocity(i), 2.6e-4_wp, &
+            sphere(0.002_wp), has_waves=.false.)
+         call solve(impact, trajectory)
+         missing(i) = (cor_of(impact, trajectory) - exact)/(1.0_wp - exact) &
+            *trajectory%state(col_time, trajectory%last)
+      end do
+      call check_relative(missing(2), missing(1), 0.02_wp, "a thin plate is the limit, order one")
+   end subroutine test_thin_plate
+
+   !> A slow impact on a half space loses W = kappa int (dF/dt)^2 dt, kappa = I(nu)/(2 pi rho c_s^3)
+   !> (G. F. Miller and H. Pursey, Proc. R. Soc. A 223 (1954) 521, doi:10.1098/rspa.1954.0134)
+   subroutine test_half_space_loss()
+      real(wp), parameter :: none(0) = 0.0_wp, nu(2) = [0.0_wp, 0.5_wp]
+      ! imaginary part of Lamb's point compliance
+      real(wp), parameter :: imaginary(2) = [1.3444_wp, 0.656_wp]
+      real(wp), parameter :: modulus = 70.0e9_wp, density = 2500.0_wp
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      real(wp) :: loss, speed
+      integer :: i
+
+      do i = 1, size(nu)
+         call make_impact(impact, solid(modulus, none, none, density, nu(i)), base_half_space, &
+            0.0_wp, 0.01_wp, 2.6e-4_wp, sphere(0.002_wp))
+         call solve(impact, trajectory, 1.0e-6_wp)
+         speed = sqrt(modulus/(2.0_wp*(1.0_wp + nu(i))*density))
+         associate (n => trajectory%last, state => trajectory%state)
+            loss = imaginary(i)/(2.0_wp*pi*density*speed**3) &
+               *sum((state(col_force, 1:n) - state(col_force, 0:n - 1))**2 &
+               /(state(col_time, 1:n) - state(col_time, 0:n - 1)))/impact%initial_energy()
+         end associate
+         call check_relative(1.0_wp - cor_of(impact, trajectory)**2, loss, 0.03_wp, &
+            "a slow impact on a half space loses what Miller and Pursey say")
+      end do
+   end subroutine test_half_space_loss
+
+   !> Whatever the plate, an impact without weight makes no energy
+   subroutine test_passive()
+      type(random_t) :: random
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      real(wp) :: cor, radius
+      integer :: i, base
+
+      do i = 1, 8
+         base = random%among(base_half_space, base_sliding)
+         radius = random%log_between(1.0e-3_wp, 1.0e-2_wp)
+         call make_impact(impact, solid(random%log_between(1.0e7_wp, 1.0e10_wp), &
+            [random%log_between(1.0e6_wp, 1.0e9_wp)], [random%log_between(1.0e2_wp, 1.0e5_wp)], &
+            1200.0_wp, random%between(0.0_wp, 0.5_wp)), base, &
+            radius*random%log_between(0.5_wp, 20.0_wp), random%log_between(0.1_wp, 3.0_wp), &
+            4.0e3_wp*radius**3, sphere(radius))
+         call solve(impact, trajectory)
+         cor = cor_of(impact, trajectory)
+         call check(cor > 0.0_wp .and. cor < 1.0_wp, "no impact makes energy")
+      end do
+   end subroutine test_passive
+
+   !> Springs, hats and steps are means: what each changes falls when it is refined
+   subroutine test_meshes()
+      type(impact_t) :: impact
+      real(wp) :: cor
+
+      call make_impact(impact, rubber(0.45_wp), base_free, 0.02_wp, 2.0_wp, 0.0327_wp, &
+         sphere(0.01_wp))
+      cor = cor_on(impact, 160, 168, 8)
+      call check_close(cor_on(impact, 160, 336, 8), cor, 5.0e-6_wp, "twice as many springs")
+      call check_close(cor_on(impact, 160, 168, 14), cor, 1.0e-5_wp, "more hats")
+      call check_close(cor_on(impact, 160, 168, 8, 1.15_wp), cor, 1.0e-5_wp, "a longer row")
+      call check_relative((cor_on(impact, 80, 168, 8) - cor) &
+         /(cor - cor_on(impact, 320, 168, 8)), 4.0_wp, 0.1_wp, "second order in the step")
+   end subroutine test_meshes
+
+   !> Coefficient of a march
+   function cor_on(impact, steps, springs, hats, longer) result(cor)
+      type(impact_t), intent(in) :: impact
+      !> Steps, springs and hats
+      integer, intent(in) :: steps, springs, hats
+      !> Radius of the row over that of the others; absent: 1
+      real(wp), intent(in), optional :: longer
+      real(wp) :: cor
+
+      real(wp), parameter :: window = 2.5e-3_wp, radius = 4.0e-3_wp
+      type(mesh_t) :: mesh
+      type(kernel_t) :: kernel
+      type(course_t) :: course
+      type(error_t), allocatable :: error
+
+      mesh = mesh_t(steps, springs, hats, window, radius)
+      if (present(longer)) mesh%radius = longer*radius
+      call new_kernel(kernel, impact%face, mesh, error)
+      if (.not. allocated(error)) call march(impact, kernel, course, error)
+      if (allocated(error)) call success(error, "an impact is marched")
+      call check(course%status == course_ended, "the contact ends")
+      cor = course%cor(impact)
+   end function cor_on
+
+   !> A kernel that is shared changes no bit, whatever was solved before
+   subroutine test_sharing()
+      type(coupled_t), allocatable :: shared, alone
+      type(impact_t) :: impact
+      type(trajectory_t) :: one, other
+      type(error_t), allocatable :: error
+      integer :: i
+
+      allocate (shared)
+      call new_coupled(shared, solver_settings_t(accuracy=1.0e-4_wp))
+      do i = 0, 7
+         call make_impact(impact, rubber(0.45_wp + 0.01_wp*real(i/4, wp)), base_half_space, &
+            0.0_wp, 1.0_wp + 0.02_wp*real(modulo(i, 4), wp), 0.03_wp, sphere(0.01_wp))
+         call shared%solve(impact, one, error)
+         call success(error, "an impact is solved by an old solver")
+         allocate (alone)
+         call new_coupled(alone, solver_settings_t(accuracy=1.0e-4_wp))
+         call alone%solve(impact, other, error)
+         call success(error, "an impact is solved by a new solver")
+         associate (last => one%last)
+            call check(last == other%last .and. .not. any(abs(one%state(:, 0:last) &
+               - other%state(:, 0:last)) > 0.0_wp), "sharing changes no bit")
+         end associate
+         deallocate (alone)
+      end do
+   end subroutine test_sharing
+
+   !> A flat punch, without inertia a damped oscillator, and with inertia on a layer
+   subroutine test_punch()
+      real(wp), parameter :: none(0) = 0.0_wp, radius = 0.003_wp, mass = 0.03_wp
+      type(prony_t) :: material
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+      real(wp) :: omega, damping, damped, angle
+
+      call new_prony(material, 1.0e6_wp, none, none, 100.0_wp, error)
+      call material%set_constants(error, density=1100.0_wp, poisson_ratio=0.45_wp)
+      call make_impact(impact, material, base_half_space, 0.0_wp, 1.0_wp, mass, &
+         punch_factor(radius), exponent=1.0_wp, has_waves=.false.)
+      call solve(impact, trajectory)
+      omega = sqrt(impact%kernel(1.0_wp)/mass)
+      damping = 0.5_wp*impact%kernel_viscosity()/(mass*omega)
+      damped = sqrt(1.0_wp - damping**2)
+      angle = pi - atan(2.0_wp*damping*damped/(1.0_wp - 2.0_wp*damping**2))
+      call check_cor(impact, trajectory, exp(-damping/damped*angle) &
+         *(damping/damped*sin(angle) - cos(angle)), "a punch on a damped spring")
+      call make_impact(impact, rubber(0.45_wp), base_bonded, 0.01_wp, 1.0_wp, mass, &
+         punch_factor(radius), exponent=1.0_wp)
+      call solve(impact, trajectory)
+      call check(trajectory%cor_sphere_error <= accuracy, "a punch on a layer converges")
+      call check_relative(trajectory%contact_radius, radius, 0.01_wp, "its radius is its own")
+   end subroutine test_punch
+
+   !> Weight: a bounce gains what the sphere falls, and a sphere that is put down comes to rest
+   subroutine test_gravity()
+      real(wp), parameter :: none(0) = 0.0_wp, gravity = 9.81_wp
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      real(wp) :: work, cor
+
+      call make_impact(impact, solid(1.0e6_wp, none, none, 1100.0_wp, 0.3_wp), base_half_space, &
+         0.0_wp, 0.05_wp, 0.03_wp, sphere(0.01_wp), has_waves=.false., gravity=gravity)
+      call solve(impact, trajectory)
+      cor = cor_of(impact, trajectory)
+      work = impact%mass*gravity*trajectory%state(col_sphere, trajectory%last)
+      call check_close(cor**2, 1.0_wp + work/impact%initial_energy(), 2.0e-5_wp, &
+         "an elastic bounce under gravity")
+      call make_impact(impact, solid(1.0e5_wp, [2.0e6_wp], [300.0_wp], 1100.0_wp, 0.45_wp), &
+         base_half_space, 0.0_wp, 0.01_wp, 0.03_wp, sphere(0.01_wp), gravity=gravity)
+      call solve(impact, trajectory)
+      call check(trajectory%status == contact_resting, "a sphere that is put down rests")
+      call check_relative(trajectory%state(col_force, trajectory%last), impact%mass*gravity, &
+         0.1_wp, "its weight is carried")
+   end subroutine test_gravity
+
+   !> Contacts that do not end: a fluid, a sheet too light for the sphere, an end time
+   subroutine test_no_end()
+      real(wp), parameter :: none(0) = 0.0_wp
+      type(coupled_t), allocatable :: solver
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+
+      call make_impact(impact, solid(70.0e9_wp, none, none, 2500.0_wp, 0.22_wp), base_free, &
+         0.0002_wp, 1.0_wp, 2.6e-4_wp, sphere(0.002_wp))
+      allocate (solver)
+      call new_coupled(solver, solver_settings_t(end_time=1.0e-4_wp))
+      call solver%solve(impact, trajectory, error)
+      call success(error, "an end time before the end is no error")
+      call check(trajectory%status == contact_lasting, "a sheet keeps the sphere")
+      call new_coupled(solver, solver_settings_t(end_time=1.0e-3_wp))
+      call make_impact(impact, rubber(0.45_wp), base_half_space, 0.0_wp, 1.0_wp, 0.03_wp, &
+         sphere(0.01_wp))
+      call solver%solve(impact, trajectory, error)
+      call success(error, "an end time before the end is no error")
+      call check(trajectory%status == contact_lasting, "the end time is before the end")
+      call new_coupled(solver, solver_settings_t(end_time=1.0e-2_wp))
+      call solver%solve(impact, trajectory, error)
+      call success(error, "an end time after the end is no error")
+      call check(trajectory%status == contact_separated, "the end time is after the end")
+   end subroutine test_no_end
+
+   !> What cannot be solved is refused with its reason
+   subroutine test_refusals()
+      type(coupled_t), allocatable :: solver
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(face_t) :: face
+      type(prony_t) :: rigid, unknown
+      type(error_t), allocatable :: error
+
+      allocate (solver)
+      call new_coupled(solver, solver_settings_t(accuracy=1.0e-11_wp))
+      call make_impact(impact, rubber(0.45_wp), base_half_space, 0.0_wp, 1.0_wp, 0.03_wp, &
+         sphere(0.01_wp))
+      call solver%solve(impact, trajectory, error)
+      call check(allocated(error), "an accuracy out of reach is refused")
+      if (allocated(error)) call check(error%code == error_numerical, "as a numerical failure")
+      call check_close(default_accuracy("coupled"), accuracy, 0.0_wp, "the default accuracy")
+      call new_rigid(rigid)
+      call new_face(face, rigid, rigid, base_half_space, 0.0_wp, .true., error)
+      call refused(error, "two rigid bodies", "")
+      call new_elastic(unknown, 1.0e9_wp, error)
+      call new_face(face, unknown, rigid, base_half_space, 0.0_wp, .true., error)
+      call refused(error, "waves without a density", "")
+      call new_face(face, rubber(0.5_wp), rigid, base_bonded, 0.0_wp, .true., error)
+      call refused(error, "a layer without a thickness", "")
+   end subroutine test_refusals
+
+end program test_coupled
