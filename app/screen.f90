@@ -20,8 +20,8 @@ module vcor_app_screen
    !> Quantities of the first table, by name
    character(len=*), parameter :: shown(*) = [character(len=20) :: 'cor', 'cor_sphere', &
       'resilience', 'rebound_height', 'contact_time', 'max_indentation', 'max_force', &
-      'residual_indentation', 'residual_ratio', 'contact_radius', 'mean_pressure', &
-      'min_frequency', 'inelasticity', 'loss_tangent', 'peak_loss_tangent']
+      'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio', &
+      'layer_stiffening', 'mean_pressure', 'min_frequency', 'inelasticity', 'loss_tangent', 'peak_loss_tangent']
 
 contains
 

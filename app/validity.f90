@@ -71,8 +71,9 @@ contains
       !> Such as `waves relaxing, law boltzmann`
       character(len=:), allocatable :: text
 
-      character(len=*), parameter :: groups(3) = [character(len=7) :: 'plate', 'contact', 'contact']
-      character(len=*), parameter :: keys(3) = [character(len=5) :: 'waves', 'law', 'pair']
+      character(len=*), parameter :: groups(4) = [character(len=7) :: 'plate', 'contact', &
+         'contact', 'plate']
+      character(len=*), parameter :: keys(4) = [character(len=5) :: 'waves', 'law', 'pair', 'base']
       character(len=:), allocatable :: word
       integer :: i
 
@@ -80,7 +81,8 @@ contains
       do i = 1, size(keys)
          if (why_unread(case, case%address(trim(groups(i)), trim(keys(i)))) /= '') cycle
          call case%get(trim(groups(i)), trim(keys(i)), word)
-         if (present(exact)) then
+         if (word == 'free') cycle
+         if (present(exact) .and. keys(i) /= 'base') then
             word = trim(exact%law)
             if (i == 1) word = trim(exact%waves)
             if (i == 3) word = trim(exact%pair)
@@ -159,10 +161,10 @@ contains
                end if
                ! first term of Sneddon's force over Hertz's
                words = "Hertz' force is about "//percent(0.1_wp*value**2) &
-                  //' too high; a slower impact makes a smaller contact'
+                  //" too high; compare shape = 'true_sphere', or take a slower impact"
             case ('thickness_ratio')
-               words = 'the plate is thin for this contact: if free, softer than a half space; ' &
-                  //"compare waves = 'body'"
+               words = 'the plate is thin for this contact: if free, softer than a half space, ' &
+                  //"compare waves = 'body'; on a rigid floor stiffer, give plate.base"
             case ('plate_wave_number')
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"

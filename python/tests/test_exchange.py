@@ -336,6 +336,20 @@ def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
     assert said in error
 
 
+def test_layers_say_so():
+    """A layer is in the header, and has no curve for all sizes: its thickness is a length."""
+    pad = vcor.read(ROOT / "examples" / "coating_on_steel.nml")
+    lammps = vcor.export(pad, "lammps", [0.1, 0.2])
+    assert ", Hertz radius 0.001 m, layer of 5e-05 m, bonded on a rigid floor\n" in str(lammps)
+    with pytest.raises(vcor.InputError, match="with a layer on a base"):
+        vcor.export(pad, "table", [0.1, 0.2], master=True)
+    pad["plate.base"], pad["plate.waves"] = "free", "none"
+    pad["sphere.shape"] = "true_sphere"
+    assert ", Hertz radius 0.001 m, true sphere\n" in str(vcor.export(pad, "lammps", [0.1, 0.2]))
+    with pytest.raises(vcor.InputError, match="with a sphere that is no paraboloid"):
+        vcor.export(pad, "table", [0.1, 0.2], master=True)
+
+
 def test_the_head_of_a_table_says_what_strikes_and_whether_its_weight_acts():
     ball = vcor.pair(RUBBER, (0.005,))
     assert ", Hertz radius 0.005 m\n" in str(vcor.export(ball, "table", [1.0, 2.0]))

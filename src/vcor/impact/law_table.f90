@@ -13,18 +13,21 @@ module vcor_impact_law_table
    implicit none
    private
 
-   public :: law_table_t, new_law_table, degree, panel
+   public :: law_table_t, new_law_table, degree, widest_panel
 
-   !> Degree of the polynomials of a panel, and its width in units of the length: f and g are
-   !> analytic within a distance of about 1, so that the error is (1/32)^9
+   !> Degree of the polynomials of a panel, and its largest width in units of the length: f and g
+   !> are analytic within a distance of about 1, so that the error is (1/32)^9
    integer, parameter :: degree = 8
-   real(wp), parameter :: panel = 0.125_wp
+   real(wp), parameter :: widest_panel = 0.125_wp
 
    !> The table
    type :: law_table_t
       !> Largest x of the table; beyond, u continues as the power of s that it is there
       real(wp) :: reach = 0.0_wp
-      !> Coefficients of f in powers of 16 x - 2 i - 1 for panel i, shape (0:degree, 0:panels - 1)
+      !> Number of panels per unit of x [-]
+      real(wp), private :: density = 0.0_wp
+      !> Coefficients of f for each panel in powers of its coordinate, -1 .. 1, shape
+      !> (0:degree, 0:panels - 1)
       real(wp), allocatable, private :: f(:, :)
       !> The same of g
       real(wp), allocatable, private :: g(:, :)
@@ -36,9 +39,11 @@ module vcor_impact_law_table
 contains
 
    !> Build the table from values of f and g
-   pure subroutine new_law_table(self, f, g)
+   pure subroutine new_law_table(self, reach, f, g)
       type(law_table_t), intent(out) :: self
-      !> Values of f at the Chebyshev points of each panel, shape (degree + 1, panels)
+      !> Largest x, > 0
+      real(wp), intent(in) :: reach
+      !> Values of f at the Chebyshev points of equal panels, shape (degree + 1, panels)
       real(wp), intent(in) :: f(:, :)
       !> Values of g there
       real(wp), intent(in) :: g(:, :)
@@ -47,7 +52,8 @@ contains
       integer :: panels
 
       panels = size(f, 2)
-      self%reach = panel*real(panels, wp)
+      self%reach = reach
+      self%density = real(panels, wp)/reach
       matrix = coefficients_of(degree + 1)
       allocate (self%f(0:degree, 0:panels - 1), self%g(0:degree, 0:panels - 1))
       self%f = matmul(matrix, f)
@@ -67,16 +73,16 @@ contains
       real(wp) :: t, slope, inside, beyond
       integer :: i, k
 
-      inside = min(x, self%reach)
-      i = min(int(inside/panel), size(self%f, 2) - 1)
-      t = inside*(2.0_wp/panel) - real(2*i + 1, wp)
+      inside = self%density*min(x, self%reach)
+      i = min(int(inside), size(self%f, 2) - 1)
+      t = 2.0_wp*inside - real(2*i + 1, wp)
       f = self%f(degree, i)
       slope = 0.0_wp
       do k = degree - 1, 0, -1
          slope = f + t*slope
          f = self%f(k, i) + t*f
       end do
-      rise = inside*(2.0_wp/panel)*slope
+      rise = 2.0_wp*inside*slope
       if (.not. x > self%reach) return
       beyond = (x/self%reach)**(rise/f)
       f = f*beyond
@@ -94,9 +100,9 @@ contains
       real(wp) :: inside
       integer :: i
 
-      inside = min(x, self%reach)
-      i = min(int(inside/panel), size(self%g, 2) - 1)
-      g = polynomial(self%g(:, i), inside*(2.0_wp/panel) - real(2*i + 1, wp))
+      inside = self%density*min(x, self%reach)
+      i = min(int(inside), size(self%g, 2) - 1)
+      g = polynomial(self%g(:, i), 2.0_wp*inside - real(2*i + 1, wp))
    end function widening
 
 end module vcor_impact_law_table

@@ -22,7 +22,7 @@
 module vcor_impact_layer_law
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_law, only : contact_law_t
-   use vcor_impact_law_table, only : degree, law_table_t, new_law_table, panel
+   use vcor_impact_law_table, only : degree, law_table_t, new_law_table, widest_panel
    use vcor_impact_layer_kernel, only : layer_kernel_t, new_layer_kernel
    use vcor_impact_response, only : base_half_space
    use vcor_kinds, only : wp
@@ -239,14 +239,14 @@ contains
       at_end = a
       if (power > 0.0_wp) at_end = (equation%profile%height(a) &
          *sum(piece(:, 1, size(piece, 3))))**(1.0_wp/power)
-      panels = int(at_end/panel)
+      panels = ceiling(at_end/widest_panel)
       allocate (f(degree + 1, panels), g(degree + 1, panels))
       point = chebyshev_points(degree + 1)
       a = 0.0_wp
       k = 1
       do i = 1, panels
          do j = 1, degree + 1
-            x = panel*(real(i, wp) - 0.5_wp + 0.5_wp*point(j))
+            x = at_end/real(panels, wp)*(real(i, wp) - 0.5_wp + 0.5_wp*point(j))
             call find_radius(x, max(a, 0.5_wp*x))
             f(j, i) = force*equation%profile%area(a, equation%first_node, equation%first_weight) &
                /(power/(power + 1.0_wp)*x**(power + 1.0_wp))
@@ -254,7 +254,7 @@ contains
             g(j, i) = a/x
          end do
       end do
-      call new_law_table(table, f, g)
+      call new_law_table(table, at_end, f, g)
 
    contains
 

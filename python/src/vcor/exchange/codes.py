@@ -39,10 +39,11 @@ from ..case import Case, as_case, number
 from .contact_laws import ACCURACY, LAWS, Twin
 
 TEMPLATES = Path(__file__).with_name("templates")
+#: Shapes with a radius
+SPHERES = ("sphere", "true_sphere")
 #: Columns that an export needs
 COLUMNS = ("cor", "cor_sphere", "cor_error", "cor_sphere_error", "contact_time", "max_force",
-           "max_indentation", "contact_radius", "initial_energy", "validity",
-           "validity_cause")  # fmt: skip
+           "initial_energy", "validity", "validity_cause")  # fmt: skip
 #: What e is, and where its end of contact is
 MEANING = {
     "cor_sphere": "speed of the sphere away from the plate at rest over that towards it",
@@ -266,7 +267,8 @@ def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr
     )
     first = found.isel(point=0)
     table.attrs["mass"] = float(2 * first.initial_energy / velocity[0] ** 2)
-    table.attrs["radius"] = float(first.contact_radius**2 / first.max_indentation)
+    radius, other = _radii(case)
+    table.attrs["radius"] = radius / (1 + radius / other) if other else radius
     judged, cause = found.validity.values, found.validity_cause.values
     parts = [f"good at {(judged == 'good').sum()} of {len(velocity)} velocities"]
     for level in ("caution", "outside"):
@@ -294,8 +296,13 @@ def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
     name = f"{case['sphere.material']} on {case['plate.material']}"
     meaning = MEANING[curve.attrs["quantity"]] if waves != "none" else MEANING["cor"]
     body, gravity = f"Hertz radius {curve.attrs['radius']:.6g} m", case["impact.gravity"]
-    if case["sphere.shape"] != "sphere":
+    if case["sphere.shape"] not in SPHERES:
         body = f"shape {case['sphere.shape']}"
+    if case["sphere.shape"] == "true_sphere":
+        body += ", true sphere"
+    if base := _base(case):
+        thickness = number(case, "plate.thickness", 2 * number(case, "plate.half_thickness", 0.0))
+        body += f", layer of {thickness:.6g} m, {base} on a rigid floor"
     return [
         # Python reads an encoding from its first two lines: nothing of the case is in them
         f"vcor {_library.__version__}, for {target.name}",
@@ -358,6 +365,12 @@ def _radii(case: Case) -> tuple[float, float]:
     return number(case, "sphere.radius", 0.0), number(case, "plate.surface_radius", 0.0)
 
 
+def _base(case: Case) -> str:
+    """How a layer lies on a floor; empty for a plate or a half space."""
+    base = str(case["plate.base"] or "free")
+    return "" if base == "free" else base
+
+
 def _density(mass: float, radius: float) -> float:
     return mass / (4 / 3 * math.pi * radius**3) if radius else 0.0
 
@@ -394,7 +407,7 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
 
 def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
     """A program with laws of its own, in the order of their misfits."""
-    if case["sphere.shape"] != "sphere" or _radii(case)[1] < 0:
+    if case["sphere.shape"] not in SPHERES or _radii(case)[1] < 0:
         raise InputError(f"{case.name}: {target.name} has contacts of spheres and flat walls only, "
                          "expected --for table or rebound")  # fmt: skip
     velocity, time = curve.velocity.values, curve.contact_time.values
@@ -479,7 +492,9 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
     reasons = {
         "waves in the plate": case["plate.waves"] not in (None, "none"),
         "gravity": bool(case["impact.gravity"]),
-        "a body that is no sphere": case["sphere.shape"] != "sphere",
+        "a layer on a base": bool(_base(case)),
+        "a body that is no sphere": case["sphere.shape"] not in SPHERES,
+        "a sphere that is no paraboloid": case["sphere.shape"] == "true_sphere",
         "the second Volterra term": case["solver.volterra_order"] == 2,
     }
     for reason, holds in reasons.items():
