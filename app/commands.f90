@@ -203,7 +203,8 @@ module vcor_app_commands
       entry_t("uncertainty", "find how uncertain results are, and which values cause it"), &
       entry_t("export", "write the law of impact for DEM and multibody programs"), &
       entry_t("card", "write and read materials of finite element programs"), &
-      entry_t("master", "make master curves of moduli at several temperatures")]
+      entry_t("master", "make master curves of moduli at several temperatures"), &
+      entry_t("table", "print measured data as the table that model = 'table' reads")]
 
 contains
 

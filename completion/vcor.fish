@@ -18,6 +18,8 @@ function __vcor_described_programs
             echo 'card	write and read materials of finite element programs'
          case master
             echo 'master	make master curves of moduli at several temperatures'
+         case table
+            echo 'table	print measured data as the table that model = '\''table'\'' reads'
          case '*'
             echo $name
       end

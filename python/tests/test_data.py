@@ -1,7 +1,9 @@
 """Files of laboratories: read right, or refused with the line and what is expected."""
 
 import io
+import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -12,6 +14,8 @@ from hypothesis import strategies as st
 import vcor
 from vcor.materials import grid
 from vcor.materials.data import columns_option, curves, read_data, read_moduli
+from vcor.materials.names import read_head
+from vcor.materials.table import main
 
 OMEGA = np.geomspace(1, 1000, 7)
 STORAGE = 2e6 + 3e7 * OMEGA**2 / (1e4 + OMEGA**2)
@@ -529,3 +533,73 @@ def test_everything_taken_is_in_one_line(tmp_path):
             "loss_modulus from 'E'' [Pa]'; not taken: Torque [µNm]"
         )
     )
+
+
+# ------------------------------------------------------------------------------ vcor table
+
+
+def printed(capsys, *words):
+    main([*map(str, words)])
+    return capsys.readouterr()
+
+
+def test_the_table_of_relaxation_moduli(tmp_path, capsys):
+    path = tmp_path / "raw.csv"
+    path.write_text(table(OMEGA * 1e3, STORAGE / 1e6, head="Zeit [ms];G(t) [MPa]\n", mark=";"))
+    found = printed(capsys, path)
+    assert found.out.startswith("time [s],shear_relaxation_modulus [Pa]\n")
+    (tmp_path / "t.csv").write_text(found.out)
+    again = read_data(tmp_path / "t.csv")
+    assert np.allclose(again.time, OMEGA) and np.allclose(again.relaxation_modulus, STORAGE)
+    assert again.attrs["shear"] is True and "note: " in found.err and "G(t) [MPa]" in found.err
+    found = printed(capsys, path, "--poisson-ratio", 0.5, "--quiet")
+    assert found.out.startswith("time [s],relaxation_modulus [Pa]\n") and not found.err
+    (tmp_path / "t.csv").write_text(found.out)
+    assert np.allclose(read_data(tmp_path / "t.csv").relaxation_modulus, 3 * STORAGE)
+    (tmp_path / "bare.csv").write_text(table(OMEGA, STORAGE))
+    words = ["--columns", "time,relaxation_modulus", "--units", "ms,MPa", "--quiet"]
+    rows = printed(capsys, tmp_path / "bare.csv", *words).out.splitlines()
+    assert np.allclose([float(x) for x in rows[1].split(",")], [1e-3, STORAGE[0] * 1e6])
+
+
+def test_the_table_of_one_temperature(tmp_path, capsys):
+    path = tmp_path / "raw.csv"
+    head = "T [C],t [s],E [Pa]\n"
+    path.write_text(table(OMEGA * 0 - 5, OMEGA, STORAGE, head=head)
+                    + table(OMEGA * 0 + 20, OMEGA, STORAGE / 2))  # fmt: skip
+    found = printed(capsys, path, "--temperature", "-5C")
+    assert len(found.out.splitlines()) == len(OMEGA) + 1
+    with pytest.raises(SystemExit) as ended:
+        main([str(path)])
+    assert ended.value.code == 2 and "268.15 K, 293.15 K" in capsys.readouterr().err
+
+
+def test_the_table_of_shift_factors(tmp_path, capsys):
+    path = tmp_path / "raw.csv"
+    path.write_text("T [C],a_T\n20,1\n0,1000\n40,0.01\n")
+    assert printed(capsys, path).out == (
+        "temperature [K],log10_shift_factor [1]\n273.15,3.0\n293.15,0.0\n313.15,-2.0\n"
+    )
+
+
+def test_what_is_no_table(tmp_path, capsys):
+    path = tmp_path / "raw.csv"
+    path.write_text(table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n"))
+    with pytest.raises(SystemExit) as ended:
+        main([str(path)])
+    assert ended.value.code == 3 and "vcor fit" in capsys.readouterr().err
+
+
+def test_the_tables_of_the_page(tmp_path):
+    page = (Path(__file__).parents[2] / "docs/data.md").read_text(encoding="utf-8")
+    tables = re.findall(r"^```csv\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    assert len(tables) == 2
+    for text in tables:
+        data = read(tmp_path, text)
+        assert np.allclose(data.storage_modulus, [2.11e6, 9.95e6])
+        assert np.allclose(data.loss_modulus / data.storage_modulus, [0.886, 1.403], rtol=1e-3)
+    known = re.findall(r"^\| ([^|]*) \| (`[^|]*|`.*) \|", page, re.MULTILINE)
+    names = [name for _, cell in known for name in re.findall(r"`([^`]+)`", cell)]
+    assert len(names) > 60
+    for name in names:
+        assert read_head(name).name, name

@@ -297,6 +297,66 @@ def test_drops_of_a_case_with_a_height_and_another_gravity():
     assert found.data[0]["at"] == pytest.approx(np.sqrt(2 * 1.62 * 0.1))
 
 
+def sequence(case, height, n):
+    """Times in flight after a drop from a height."""
+    g, speed, times = 9.80665, np.sqrt(2 * 9.80665 * height), []
+    for _ in range(n):
+        speed *= case.solve({"impact.velocity": speed})["cor_sphere"]
+        times.append(2 * speed / g)
+    return times
+
+
+def test_a_drop_height_beside_times_in_flight(sls):
+    times = sequence(sls, 0.65, 4)
+    free, sls["rubber.beta"] = ["rubber.beta"], 1000.0
+    found = vcor.identify(sls, {"drop_height": [0.65] * 4, "bounce_time": times}, free)
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-6) and len(found.data) == 4
+    only = vcor.identify(sls, {"bounce_time": times}, free)
+    assert only["rubber.beta"] == pytest.approx(1200, rel=1e-6) and len(only.data) == 3
+    for columns, said in (
+        ({"drop_height": [10.0] * 4, "bounce_time": times}, "a height that agrees with the times"),
+        ({"drop_height": [0.65, 0.6, 0.5, 0.4], "bounce_time": times}, "expected the first one"),
+        ({"bounce_time": np.cumsum(times)}, "expected times in flight, which fall"),
+    ):
+        with pytest.raises(vcor.InputError, match=said):
+            vcor.identify(sls, columns, free)
+
+
+def test_velocities_before_and_after(sls, tmp_path):
+    velocity = np.array([1.0, 2.0, 4.0])
+    rebound = velocity * sls.points({"impact.velocity": velocity}).cor_sphere.values
+    sls["rubber.beta"] = 1000.0
+    (tmp_path / "v.csv").write_text("v_in [m/s],v_out [mm/s]\n" + "".join(
+        f"{a},{-1e3 * b:.12g}\n" for a, b in zip(velocity, rebound, strict=True)))  # fmt: skip
+    found = vcor.identify(sls, tmp_path / "v.csv", ["rubber.beta"])
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-6)
+    assert "rebound_velocity from 'v_out [mm/s]'" in str(found)
+    with pytest.raises(vcor.InputError, match="both rebound_velocity and rebound_height"):
+        both = {"velocity": [1.0], "rebound_velocity": [0.5], "rebound_height": [0.1]}
+        vcor.identify(sls, both, ["rubber.beta"])
+
+
+@pytest.mark.parametrize(("offset", "sign", "mass"), [(0, 1, None), (-7, 1, None), (5, -1, None),
+                                                      (3, -1, 0.02)])  # fmt: skip
+def test_records_on_a_baseline(sls, offset, sign, mass):
+    """Force or acceleration of a sensor that is not tared, or mounted the other way round."""
+    if mass:
+        sls["sphere.mass"] = mass
+    history = sls.history()
+    start, length = 2e-4, float(history.time[-1])
+    at = np.arange(0, length + 4e-4, length / 60)
+    force = np.interp(at - start, history.time, history.force, left=0, right=0)
+    noise = 1e-3 * force.max() * np.random.default_rng(3).standard_normal(len(at))
+    values = sign * (force + noise) / (mass or 1) + offset
+    sls["rubber.beta"] = 1000.0
+    data = {"time": at, "acceleration" if mass else "force": values}
+    found = vcor.identify(sls, data, ["rubber.beta"])
+    low, high = found.estimates[0].interval_95
+    assert low < 1200 < high and high / low < 1.05
+    assert ("turned over" in str(found)) is (sign < 0)
+    assert f"a baseline of {sign * offset * (mass or 1):.2g}"[:-1] in str(found)
+
+
 LAB = {
     "blanks": "drop height [cm], Rebound Height (mm)\n40,200\n80,390\n",
     "Excel": "\ufeff# ball, 23 °C\nsep=;\nNr.;drop height [cm];rebound height [mm]\n1;40,0;200\n"

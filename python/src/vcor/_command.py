@@ -57,6 +57,16 @@ class Parser(argparse.ArgumentParser):
         return options
 
 
+def joined(words: Sequence[str], *names: str) -> list[str]:
+    """Words in which values that may begin with a dash, as -5C, are joined to their options."""
+    found = list(words)
+    for name in names:
+        if name in found[:-1]:
+            i = found.index(name)
+            found[i : i + 2] = [f"{name}={found[i + 1]}"]
+    return found
+
+
 def _note(message: Warning | str, *_: Any) -> None:
     """Write a warning on one line."""
     sys.stderr.write(f"vcor: note: {printable(str(message))}\n")
@@ -120,4 +130,5 @@ export = functools.partial(_run, "export", "exchange.codes")
 identify = functools.partial(_run, "identify", "materials.identification")
 master = functools.partial(_run, "master", "materials.master")
 plot = functools.partial(_run, "plot", "plot")
+table = functools.partial(_run, "table", "materials.table")
 uncertainty = functools.partial(_run, "uncertainty", "uncertainty")

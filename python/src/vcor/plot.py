@@ -35,7 +35,15 @@ from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, whole
 from ._text import printable
 from .case import listed
-from .materials.data import is_temperature, plain_name, read_data
+from .materials.data import (
+    Columns,
+    Units,
+    add_data_options,
+    columns_option,
+    is_temperature,
+    plain_name,
+    read_data,
+)
 from .materials.units import PREFIXES, ZERO_C
 from .sources import Result, Source, is_result, legends_of
 
@@ -95,6 +103,8 @@ def figure(
     levels: int | Sequence[float] = 8,
     hatch: bool = True,
     width: float | None = None,
+    columns: Columns = None,
+    units: Units = None,
 ) -> Figure:
     """Make a figure.
 
@@ -120,6 +130,8 @@ def figure(
         Whether to hatch where the model does not hold.
     width
         Width [cm]; None: 8.5 for one panel, 17 for several.
+    columns, units
+        Which columns of measured data are what, and their units, as for `vcor.read_data`.
 
     Returns
     -------
@@ -130,7 +142,7 @@ def figure(
     files = [files] if isinstance(files, (xr.Dataset, str)) else listed(files)
     results = [Result(source) for source in files if is_result(source)]
     data = [
-        read_data(name, whole=False)
+        read_data(name, columns, units, whole=False)
         for name in files
         if not (isinstance(name, xr.Dataset) or is_result(name))
     ]
@@ -746,6 +758,7 @@ def _parser() -> _command.Parser:
     add("--output", metavar="PATH", help="NAME.svg, .pdf or .png, or a folder")
     add("--format", choices=FORMATS, help="format in a folder; default: svg")
     add("--script", action="store_true", help="leave the Python script that makes the figure")
+    add_data_options(parser)
     add("--quiet", action="store_true", help="say nothing of what is written")
     return parser
 
@@ -774,6 +787,7 @@ def _settings(options: Any) -> dict[str, Any]:
             "0.2,0.5"
         ) from None
     settings["ranges"] = ranges or None
+    settings["columns"], settings["units"] = columns_option(options.columns), options.units
     return {name: value for name, value in settings.items() if value is not None}
 
 
@@ -806,7 +820,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if options.script:
             written.append(path.with_suffix(".py"))
             _text.write(written[-1], _script(options.files, settings, path).encode())
+        said = [read_data(name, settings.get("columns"), settings.get("units"), whole=False)
+                for name in options.files if not is_result(name)]  # fmt: skip
         if not options.quiet:
+            sys.stdout.write("".join(f"{one.attrs['taken']}\n" for one in said))
             sys.stdout.write("".join(f"written {path}\n" for path in written))
 
 

@@ -23,10 +23,12 @@ from scipy.special import chdtri, ndtri, stdtrit
 from .. import _command, _library, _text
 from .._library import MOST_SEED, Error, Floats, InputError, NumericalError, UsageError, whole
 from ..case import Case, as_case, listed, number, progress_bar, read, scalars, with_material
+from .data import Columns, Units, add_data_options, columns_option
 from .fit import fit
 from .observations import (
     COEFFICIENTS,
     Block,
+    File,
     Impacts,
     Record,
     Source,
@@ -129,6 +131,8 @@ class Identification:
     model: str = ""
     #: Where the model of the impact does not hold, in words
     validity: str = "good"
+    #: Which columns of the files were taken for what
+    taken: tuple[str, ...] = ()
 
     def __getitem__(self, address: str) -> float:
         """Value of a parameter."""
@@ -272,7 +276,7 @@ class _Problem:
             raise InputError(f"{sources[i]}: found a {self.quantity[i]} of {self.value[i]:.6g}, "
                              "expected one > 0, or with a standard error")  # fmt: skip
         self._last = np.empty(0), np.empty(0)
-        self.dof = len(self.value) - len(self.free) - sum(isinstance(b, Record) for b in blocks)
+        self.dof = len(self.value) - len(self.free) - sum(block.unknowns for block in blocks)
         if self.dof < (1 if self.estimated else 0):
             raise InputError(self.too_few(len(self.value)))
 
@@ -420,6 +424,8 @@ def identify(
     errors: Mapping[str, float] | None = None,
     model: str | None = None,
     seed: int = 1,
+    columns: Columns = None,
+    units: Units = None,
 ) -> Identification:
     """Identify parameters of a case from measured data, as `vcor identify` does.
 
@@ -445,6 +451,8 @@ def identify(
         Another model for the material, `prony:2` for two terms; all its parameters are free.
     seed
         Seed of the starts.
+    columns, units
+        Which columns of files are what, and their units, as for `vcor.read_data`.
 
     Returns
     -------
@@ -470,6 +478,7 @@ def identify(
     alone: Any = [data] if hasattr(data, "keys") else listed(data)
     # a DataFrame is no Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
+    sources = [one if isinstance(one, dict) else File(one, columns, units) for one in sources]
     if not sources:
         raise UsageError("expected at least one file or table of data")
     free = [address for address in free if address not in fix]
@@ -494,6 +503,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     """What the fit says; refused if a combination is not determined."""
     case, free, dof = problem.case, problem.free, problem.dof
     found = problem.predict(x[None])[0]
+    taken = tuple(b.said() if isinstance(b, Record) else b.taken for b in problem.blocks)
     places = len({*zip(problem.quantity, found, strict=True)})
     distinct = len({*zip(problem.quantity, found, problem.value, strict=True)})
     # copies of a datum neither determine more nor tell how much data scatter
@@ -551,6 +561,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
         covariance=covariance,
         chi2=chi2,
         dof=dof,
+        taken=tuple(filter(None, taken)),
         follows=problem.estimated or chi2 <= float(chdtri(max(dof, 1), FOLLOWS)),
         relative_error=scale if problem.estimated else None,
         combinations=tuple(
@@ -797,7 +808,8 @@ def _percent(error: float) -> str:
 def _report(found: Identification) -> str:
     """What the command prints."""
     lines = [
-        f"{len(found.data)} data of {', '.join(dict.fromkeys(r['source'] for r in found.data))}"
+        f"{len(found.data)} data of {', '.join(dict.fromkeys(r['source'] for r in found.data))}",
+        *found.taken,
     ]
     head = f"{'':32s} {'value':>12s} {'error':>9s}  {'68 % interval':26s}{'95 % interval':26s}"
     lines += ["", head.rstrip()]
@@ -880,6 +892,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     model = "another model of the material, such as sls or prony:2; several are compared"
     add("--model", metavar="NAME,NAME", action="append", default=[], help=model)
     add("--seed", type=int, default=1, help="seed of the starts")
+    add_data_options(parser)
     with _command.one_line():
         _work(parser.options(arguments))
 
@@ -894,11 +907,13 @@ def _work(options: argparse.Namespace) -> None:
     models = [word.strip() for words in options.model for word in words.split(",")]
     case = read(options.case, *(name for name in options.data if name.endswith(".nml")))
     data = [name for name in options.data if not name.endswith(".nml")]
+    said: dict[str, Any] = {"columns": columns_option(options.columns), "units": options.units}
     for model in models or [None]:
         try:
             found.append(
-                identify(case, data, free, fix=fix, errors=errors, model=model, seed=options.seed)
-            )
+                identify(case, data, free, fix=fix, errors=errors, model=model, seed=options.seed,
+                         **said)
+            )  # fmt: skip
         except NumericalError as error:
             refused.append(error)
     if not found:

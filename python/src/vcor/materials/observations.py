@@ -7,6 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -19,7 +20,17 @@ from .._text import near
 from ..case import Case, arrays, number
 from .data import Columns, Units, curves, read_data, tensile
 
-Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
+
+@dataclass(frozen=True)
+class File:
+    """A file of measured data, with what its user says of its columns and units."""
+
+    path: str | os.PathLike[str]
+    columns: Columns = None
+    units: Units = None
+
+
+Source = str | os.PathLike[str] | File | Mapping[str, ArrayLike]
 
 #: Standard gravity [m/s2]
 GRAVITY = 9.80665
@@ -32,12 +43,17 @@ SETTINGS = {
 }
 #: Quantities that are at most 1, and say nothing about the scale of times
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
+#: Factor between neighbouring coefficients of restitution that no sequence of bounces has
+UNLIKE = 2.0
 #: Difference of temperatures that is none [K]
 SAME_TEMPERATURE = 1.0
 
 
 class Impacts:
     """Impacts: a row of settings each, and what was measured."""
+
+    unknowns = 0
+    taken = ""
 
     def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
         self.source = source
@@ -122,24 +138,57 @@ class Impacts:
 
 
 class Record:
-    """Force over time of one impact; when it began is not known."""
+    """Force over time of one impact; when it began is not known, nor where the sensor has its zero.
+
+    The baseline is a constant that is found with the begin of the contact, for any parameters; a
+    record whose largest deflection from it is negative is turned over.
+    """
+
+    #: Numbers that are found for any parameters: start and baseline
+    unknowns = 2
+    taken = ""
 
     def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
         self.source = source
-        self.at, self.value = columns["time"], columns["force"]
-        if len(self.at) < 5 or not (np.diff(self.at) > 0).all():
-            raise InputError(f"{source}: expected five or more rising times with forces")
-        self.quantity = ["force"] * len(self.at)
-        # an error relative to the value would take the zeros beside the contact as exact
-        self.sigma = _sigma(columns, "force")
-        self.scale = np.full(len(self.at), float(np.max(self.value)))
         self.settings = {
             address: float(columns[name][0])
             for name, address in SETTINGS.items()
             if name in columns
         }
-        if not self.scale[0] > 0:
-            raise InputError(f"{source}: found no force > 0")
+        self.at, forces, factor = columns["time"], columns.get("force"), 1.0
+        name = "force"
+        if forces is None:
+            name, factor = "acceleration", self._mass(case)
+            forces = columns[name]
+        good = np.isfinite(forces) & np.isfinite(self.at)
+        self.at, forces = self.at[good], factor * forces[good]
+        if len(self.at) < 5 or not (np.diff(self.at) > 0).all():
+            raise InputError(f"{source}: expected five or more rising times with forces")
+        # the ends of a record are outside the contact, or where it begins and ends
+        edge = max(1, len(forces) // 20)
+        zero = float(np.median(np.concatenate([forces[:edge], forces[-edge:]])))
+        self.turned = float(np.max(forces)) - zero < zero - float(np.min(forces))
+        self.value = -forces if self.turned else forces
+        self.quantity = ["force"] * len(self.at)
+        # an error relative to the value would take the zeros beside the contact as exact
+        self.sigma = factor * _sigma(columns, name)[good]
+        largest = float(np.max(self.value)) - (-zero if self.turned else zero)
+        self.scale = np.full(len(self.at), largest)
+        #: Baseline that was found last [N]
+        self.baseline = zero
+        if not largest > 0:
+            raise InputError(f"{source}: found a constant force, expected a record of an impact")
+
+    def _mass(self, case: Case) -> float:
+        """Mass of the sphere, by which its acceleration is a force."""
+        impact = case.copy()
+        for address, value in self.settings.items():
+            impact[address] = value
+        given = number(impact, "sphere.mass")
+        if math.isfinite(given):
+            return given
+        density = number(impact, f"{impact['sphere.material']}.density")
+        return 4 / 3 * math.pi * density * number(impact, "sphere.radius") ** 3
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Data for each row of values at the addresses, shape (rows, n); nan without result."""
@@ -149,7 +198,7 @@ class Record:
         return _one_by_one(self._force, impact, addresses, values, len(self.at))
 
     def _force(self, case: Case) -> Floats:
-        """The force from the start that fits best, found by Gauss and Newton."""
+        """The force from the start and on the baseline that fit best, by Gauss and Newton."""
         history = case.history()
         times, forces = history["time"].values, history["force"].values
         course = CubicSpline(times, forces)
@@ -160,20 +209,34 @@ class Record:
             inside = (t > times[0]) & (t < times[-1])
             model = np.where(inside, course(t), 0.0)
             rate = np.where(inside, slope(t), 0.0)
-            change = float(rate @ (model - self.value)) / max(float(rate @ rate), 1e-300)
+            # the best baseline for a start is the mean misfit
+            rate -= rate.mean()
+            misfit = model - self.value
+            change = float(rate @ (misfit - misfit.mean())) / max(float(rate @ rate), 1e-300)
             start += max(-0.2 * times[-1], min(0.2 * times[-1], change))
             if abs(change) < 1e-12 * times[-1]:
                 break
-        return model
+        self.baseline = -float(misfit.mean())
+        return model + self.baseline
+
+    def said(self) -> str:
+        """What was taken, and how: the baseline of the parameters that were tried last."""
+        turned = ", turned over" * self.turned
+        return (
+            f"{self.taken or self.source}; force above a baseline of {self.baseline:.4g} N{turned}"
+        )
 
     def windows(self, case: Case) -> Floats:
         """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
-        length = float(np.ptp(self.at[self.value > 0.01 * self.scale[0]]))
+        length = float(np.ptp(self.at[self.value - self.baseline > 0.01 * self.scale[0]]))
         return np.array([[length / 100, length, self.settings.get("impact.temperature", np.nan)]])
 
 
 class Moduli:
     """Relaxation moduli, or storage and loss moduli, of a material, at one temperature or more."""
+
+    unknowns = 0
+    taken = ""
 
     def __init__(
         self, source: str, columns: Mapping[str, Floats], material: str, case: Case
@@ -268,21 +331,54 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
         columns.pop(f"{name}_sigma", None)
         return columns.pop(name), sigma
 
+    if "velocity" in columns and (columns["velocity"] < 0).all():
+        columns["velocity"] = -columns["velocity"]
     if "drop_height" in columns:
         if "velocity" in columns:
             raise InputError(f"{source}: found both velocity and drop_height")
         columns["velocity"] = np.sqrt(2 * gravity * take("drop_height")[0])
     if "bounce_time" in columns:
         times, sigma = take("bounce_time")
-        if len(times) < 2:
+        if not (times > 0).all():
+            raise InputError(f"{source}: found a time in flight that is not > 0, expected times in "
+                             "their order")  # fmt: skip
+        if len(times) > 1 and (np.diff(times) > 0).all():
+            raise InputError(f"{source}: found times that rise, expected times in flight, which "
+                             "fall; times of the impacts belong under event_time")  # fmt: skip
+        # the velocity of the drop, if it is given, and of each flight, which ends as it began
+        drop = columns.pop("velocity", np.empty(0))
+        drop = drop[np.isfinite(drop)]
+        if drop.size and np.ptp(drop) > 1e-9 * np.max(drop):
+            raise InputError(f"{source}: found several velocities or heights beside the times of "
+                             "one sequence of bounces, expected the first one")  # fmt: skip
+        flights, sigmas = gravity * times / 2, gravity * sigma / 2
+        speed = np.concatenate([drop[:1], flights])
+        error = np.concatenate([np.zeros(len(drop[:1])), sigmas])
+        if len(speed) < 2:
             raise InputError(f"{source}: expected two or more bounce times in their order")
-        columns = {name: column[:-1] for name, column in columns.items()}
-        columns["velocity"] = gravity * times[:-1] / 2
-        ratio = times[1:] / times[:-1]
-        put("cor_sphere", ratio, ratio * np.hypot(sigma[1:] / times[1:], sigma[:-1] / times[:-1]))
+        ratio = speed[1:] / speed[:-1]
+        if drop.size and len(ratio) > 1 and not 1 / UNLIKE < ratio[0] / ratio[1] < UNLIKE:
+            raise InputError(
+                f"{source}: found a drop at {drop[0]:.4g} m/s that rebounds at {speed[1]:.4g} m/s "
+                f"(cor {ratio[0]:.3g}), while the next cor is {ratio[1]:.3g}, expected a height "
+                "that agrees with the times"
+            )
+        n = len(ratio)
+        columns = {name: column[:n] for name, column in columns.items()}
+        columns["velocity"] = speed[:-1]
+        put("cor_sphere", ratio, ratio * np.hypot(error[1:] / speed[1:], error[:-1] / speed[:-1]))
+    if {"rebound_velocity", "rebound_height"} <= columns.keys():
+        raise InputError(f"{source}: found both rebound_velocity and rebound_height")
+    if "rebound_velocity" in columns:
+        # a velocity after the impact has the other sign, if any
+        rebound, sigma = take("rebound_velocity")
+        rebound = np.abs(rebound)
+        own = np.array(velocity_of(case))
+        ratio = rebound / columns.get("velocity", own)
+        put("cor_sphere", ratio, ratio * sigma / rebound)
     if "rebound_height" in columns:
         height, sigma = take("rebound_height")
-        speed = columns.get("velocity", velocity_of(case))
+        speed = columns.get("velocity", np.array(velocity_of(case)))
         ratio = np.sqrt(2 * gravity * height) / speed
         put("cor_sphere", ratio, ratio * sigma / height / 2)
     return columns
@@ -290,29 +386,34 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
 
 def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     """Data of a file or of columns, by what they are."""
-    materials = materials_of(free)
+    materials, taken = materials_of(free), ""
     if isinstance(source, Mapping):
         name = "data"
         columns = arrays(source)
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
     else:
-        name = os.fspath(source)
-        columns, _ = read_columns(source, case, materials)
+        file = source if isinstance(source, File) else File(source)
+        name = os.fspath(file.path)
+        columns, taken = read_columns(file.path, case, materials, file.columns, file.units)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
             row = int(np.argmax(wrong))
             raise InputError(f"{name}: row {row + 1}: found a {key} of {column[row]:.6g}, expected "
                              f"a finite one{' > 0' * key.endswith('_sigma')}")  # fmt: skip
-    if "force" in columns and "time" in columns:
-        return Record(name, columns, case)
-    if any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
+    block: Block
+    if "time" in columns and ("force" in columns or "acceleration" in columns):
+        block = Record(name, columns, case)
+    elif any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
-        return Moduli(name, columns, materials[0], case.copy())
-    return Impacts(name, columns, case)
+        block = Moduli(name, columns, materials[0], case.copy())
+    else:
+        block = Impacts(name, columns, case)
+    block.taken = taken
+    return block
 
 
 def read_columns(

@@ -1,0 +1,111 @@
+"""Data as the plain table of two columns that `model = 'table'` and `shift_file` read."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+from collections.abc import Sequence
+
+import numpy as np
+
+from .. import _command
+from .._library import InputError, UsageError, within
+from .data import (
+    Columns,
+    Units,
+    add_data_options,
+    columns_option,
+    curves,
+    kelvin,
+    read_data,
+    tensile,
+)
+
+#: Difference from the temperature that is asked for that is none [K]
+_SAME = 1.0
+
+
+def table(
+    path: str | os.PathLike[str],
+    columns: Columns = None,
+    units: Units = None,
+    *,
+    poisson_ratio: float | None = None,
+    temperature: float | None = None,
+) -> tuple[str, str]:
+    """Text of a table of relaxation moduli or shift factors, and a line on what was taken.
+
+    Parameters
+    ----------
+    path
+        Measured data, as `read_data` reads them.
+    columns, units
+        As for `read_data`.
+    poisson_ratio
+        By which shear moduli become tensile ones; without it they stay what they are.
+    temperature
+        Which curve [K], where the data have several.
+    """
+    data = read_data(path, columns, units)
+    if data.attrs["kind"] == "shift":
+        data = data.sort_values("temperature")
+        if (np.diff(data.temperature) <= 0).any():
+            raise InputError(f"{data.attrs['path']}: found a temperature twice, expected it once")
+        rows = zip(data.temperature, np.log10(data.shift_factor), strict=True)
+        return _text("temperature [K],log10_shift_factor [1]", rows), data.attrs["taken"]
+    if data.attrs["kind"] != "relaxation":
+        raise InputError(
+            f"{data.attrs['path']}: found no relaxation moduli or shift factors, of which a table "
+            "is made; expected moduli against frequency to be fitted (vcor fit)"
+        )
+    if poisson_ratio is not None:
+        data = tensile(data, within(poisson_ratio, "--poisson-ratio", -1, 0.5))
+    found = curves(data)
+    if temperature is not None:
+        found = [one for one in found if abs(one.attrs["temperature"] - temperature) < _SAME]
+    if len(found) != 1:
+        known = ", ".join(f"{one.attrs['temperature']:.2f} K" for one in curves(data)
+                          if not math.isnan(one.attrs["temperature"]))  # fmt: skip
+        raise UsageError(f"{data.attrs['path']}: found {len(found)} curves ({known or 'without'} "
+                         "temperatures), expected --temperature with that of one")  # fmt: skip
+    (one,) = found
+    name = "shear_relaxation_modulus" if data.attrs["shear"] else "relaxation_modulus"
+    rows = zip(one.time, one.relaxation_modulus, strict=True)
+    return _text(f"time [s],{name} [Pa]", rows), data.attrs["taken"]
+
+
+def _text(head: str, rows: zip[tuple[float, float]]) -> str:
+    return head + "\n" + "".join(f"{float(x)!r},{float(y)!r}\n" for x, y in rows)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor table`; exits with the codes of the program."""
+    parser = _command.Parser(
+        "table",
+        description="Relaxation moduli or shift factors of a file of measured data as the plain "
+        "table that model = 'table' and shift_file read; it is printed.",
+    )
+    parser.add_argument("data", metavar="DATA", help="file of measured data; - is the input")
+    add_data_options(parser)
+    what = "by which shear moduli become tensile ones"
+    parser.add_argument("--poisson-ratio", type=float, metavar="NU", help=what)
+    what = "which curve, where the data have several, such as 20C or 293K"
+    parser.add_argument("--temperature", metavar="T", help=what)
+    parser.add_argument("--quiet", action="store_true", help="do not say what was taken")
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    with _command.one_line():
+        _work(parser.options(_command.joined(words, "--temperature")))
+
+
+def _work(options: argparse.Namespace) -> None:
+    at = options.temperature
+    text, taken = table(
+        options.data, columns_option(options.columns), options.units,
+        poisson_ratio=options.poisson_ratio,
+        temperature=None if at is None else kelvin(at, "--temperature"),
+    )  # fmt: skip
+    if not options.quiet:
+        sys.stderr.write(f"vcor: note: {taken}\n")
+    sys.stdout.write(text)
