@@ -13,6 +13,7 @@ python/tests.
 import argparse
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -38,7 +39,7 @@ def by_rise(case, data, errors, truth):
     """The same by the sum of squares at the true value of each parameter."""
     case["solver.accuracy"] = inner.ACCURACY
     blocks = [inner.observations(case, data, list(truth))]
-    problem = inner._Problem(case, list(truth), blocks, errors)
+    problem = inner.Problem(case, list(truth), blocks, errors, SimpleNamespace(update=len))
     best, least = problem.best(1)
     values, held = np.log(list(truth.values())), []
     for i, value in enumerate(values):

@@ -18,6 +18,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from . import _command, _library, _text
+from ._differences import slopes
 from ._library import (
     MOST_SEED,
     Floats,
@@ -29,6 +30,8 @@ from ._library import (
     within,
 )
 from .case import MOST_POINTS, Case, as_case, listed, read, with_material
+from .materials.advice import percent, product
+from .materials.limits import UNDETERMINED
 from .materials.observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
@@ -111,6 +114,13 @@ class Spread:
         weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
         if weights.min() < -1e-8 * weights.max():
             raise InputError("--covariance: the matrix is not positive")
+        if weights[-1] > UNDETERMINED**2:
+            names = [fit.addresses[i] for i in kept]
+            raise NumericalError(
+                f"--covariance: the fit does not determine {product(names, vectors[:, -1])}, which "
+                f"has a standard error of {percent(math.sqrt(weights[-1]))}: fix a parameter of it "
+                "in the fit, and give that with --vary ADDRESS=LOW:HIGH"
+            )
         if fit.note:
             warnings.warn(f"--covariance: {fit.note}", stacklevel=3)
         if fit.group:
@@ -288,20 +298,11 @@ def sensitivities(
         raise UsageError("expected at least one parameter")
     values = np.array([_number(case, address) for address in parameters])
     middle = _solve(case, list(parameters), values[None], quantities)[0]
-    slope = np.full((len(quantities), len(values)), np.nan)
-    # central, and one-sided beside the end of a range
-    for steps, weights in (
-        ((-2, -1, 1, 2), (1, -8, 8, -1)),
-        ((0, 1, 2, 3, 4), (-25, 48, -36, 16, -3)),
-        ((0, -1, -2, -3, -4), (25, -48, 36, -16, 3)),
-    ):
-        rest = np.flatnonzero(np.isnan(slope).any(axis=0))
-        table = np.tile(values, (len(rest), len(steps), 1))
-        for row, i in zip(table, rest, strict=True):
-            row[:, i] *= np.exp(np.array(steps) * STEP)
-        found = _solve(case, list(parameters), table.reshape(-1, len(values)), quantities)
-        found = found.reshape(len(rest), len(steps), len(quantities))
-        slope[:, rest] = np.einsum("ijk,j->ki", found, weights) / (12 * STEP)
+
+    def results(steps: Floats) -> Floats:
+        return _solve(case, list(parameters), values * np.exp(steps), quantities)
+
+    slope = slopes(results, len(values), STEP)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = slope / middle[:, None]
     return xr.DataArray(

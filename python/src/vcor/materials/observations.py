@@ -8,10 +8,11 @@ import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from .. import _library
@@ -45,6 +46,8 @@ SETTINGS = {
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Factor between neighbouring coefficients of restitution that no sequence of bounces has
 UNLIKE = 2.0
+#: Relative error of the moduli of a model, with room: functions in double precision
+ERROR_OF_MODULI = 1e-11
 #: Difference of temperatures that is none [K]
 SAME_TEMPERATURE = 1.0
 
@@ -57,7 +60,7 @@ class Impacts:
 
     def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
         self.source = source
-        columns = _as_velocities(source, dict(columns), case)
+        columns, digits = _as_velocities(source, dict(columns), case)
         self.settings: dict[str, Floats] = {}
         parts = []
         known = _library.columns(0)
@@ -81,7 +84,8 @@ class Impacts:
                 continue
             rows = np.flatnonzero(np.isfinite(column))
             if rows.size:
-                parts.append((name, rows, column[rows], _sigma(columns, name)[rows]))
+                digit = digits.get(name, last_digit(column))
+                parts.append((name, rows, column[rows], _sigma(columns, name)[rows], digit[rows]))
         if not parts:
             raise InputError(f"{source}: there is no measured quantity, such as cor, in this file")
         for address, column in self.settings.items():
@@ -90,9 +94,10 @@ class Impacts:
                 raise InputError(f"{source}: row {row}: found no number of {address}")
         self.names = [name for name, *_ in parts]
         self.quantity = [name for name, rows, *_ in parts for _ in rows]
-        self._rows, self.value, self.sigma = (
-            np.concatenate([part[i] for part in parts]) for i in (1, 2, 3)
+        self._rows, self.value, self.sigma, self.digit = (
+            np.concatenate([part[i] for part in parts]) for i in (1, 2, 3, 4)
         )
+        self.scale = np.abs(self.value)
         self._columns = np.repeat(np.arange(len(parts)), [len(rows) for _, rows, *_ in parts])
         n = max((len(column) for column in self.settings.values()), default=max(self._rows) + 1)
         #: Velocity of each impact [m/s]
@@ -102,17 +107,43 @@ class Impacts:
         else:
             self.settings["impact.drop_height"] = self.velocity**2 / (2 * gravity_of(case))
         self.at = self.velocity[self._rows]
+        table = np.stack(list(self.settings.values()), axis=1)
+        self.place = [tuple(table[row].tolist()) for row in self._rows]
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Data for each row of values at the addresses, shape (rows, n); nan without result."""
         results = self.quantities(case, addresses, values, self.names)
         return results[:, self._rows, self._columns]
 
+    def error_of_model(self, case: Case, addresses: list[str], values: Floats) -> Floats:
+        """Error of the solution of each datum at one row of values: as stated, or as asked for."""
+        known = _library.columns(0)
+        stated = [f"{name}_error" for name in self.names]
+        # what has no stated error of its own is as accurate, in parts of its size, as the rebound
+        own = np.array([name in known for name in stated])
+        names = [name if name in known else "cor_sphere_error" for name in stated]
+        found = self.quantities(case, addresses, values[None], names)[0, self._rows, self._columns]
+        found *= np.where(own[self._columns], 1.0, self.scale)
+        errors: Floats = np.fmax(number(case, "solver.accuracy") * self.scale, found)
+        return errors
+
+    def possible(self, case: Case, addresses: list[str], values: Floats) -> NDArray[np.bool_]:
+        """Whether the impact of median velocity has a result, for each row of values."""
+        one = np.argsort(self.velocity)[[len(self.velocity) // 2]]
+        found = self.quantities(case, addresses, values, self.names, one)
+        possible: NDArray[np.bool_] = np.all(np.isfinite(found[:, 0]), axis=1)
+        return possible
+
     def quantities(
-        self, case: Case, addresses: list[str], values: Floats, names: list[str]
+        self,
+        case: Case,
+        addresses: list[str],
+        values: Floats,
+        names: list[str],
+        which: NDArray[np.intp] | slice = slice(None),
     ) -> Floats:
-        """Columns of all impacts, shape (rows of values, impacts, names)."""
-        settings = np.stack(list(self.settings.values()), axis=1)
+        """Columns of all impacts or some, shape (rows of values, impacts, names)."""
+        settings = np.stack(list(self.settings.values()), axis=1)[which]
         m, n = len(values), len(settings)
         table = np.hstack([np.tile(settings, (m, 1)), np.repeat(values, n, axis=0)])
         # an impact on a layer takes a thousand times as long as on a thin plate
@@ -174,6 +205,8 @@ class Record:
         self.sigma = factor * _sigma(columns, name)[good]
         largest = float(np.max(self.value)) - (-zero if self.turned else zero)
         self.scale = np.full(len(self.at), largest)
+        self.digit = factor * last_digit(columns[name])[good]
+        self.place = [(t,) for t in self.at.tolist()]
         #: Baseline that was found last [N]
         self.baseline = zero
         if not largest > 0:
@@ -196,6 +229,10 @@ class Record:
         for address, value in self.settings.items():
             impact[address] = value
         return _one_by_one(self._force, impact, addresses, values, len(self.at))
+
+    def error_of_model(self, case: Case, *_: Any) -> Floats:
+        """Error of the solution of each datum, as asked for."""
+        return number(case, "solver.accuracy") * self.scale
 
     def _force(self, case: Case) -> Floats:
         """The force from the start and on the baseline that fit best, by Gauss and Newton."""
@@ -253,12 +290,21 @@ class Moduli:
         self.quantity = [name for name in names for _ in self.points]
         self.value = np.concatenate([columns[name] for name in names])
         self.sigma = np.concatenate([_sigma(columns, name) for name in names])
+        self.scale = np.abs(self.value)
+        self.digit = np.concatenate([last_digit(columns[name]) for name in names])
         at = columns.get("temperature", np.full(len(self.points), np.nan))
         if case[f"{material}.shift"] is None and np.ptp(at) < SAME_TEMPERATURE:
             at = np.full(len(at), np.nan)
         #: Points at each temperature [K], nan: that of the case
         self.groups = {float(t): np.flatnonzero((at == t) | np.isnan(at)) for t in np.unique(at)}
+        self.place = list(zip(self.points.tolist(), np.nan_to_num(at).tolist(), strict=True))
+        self.place *= len(names)
         self._moduli(case)
+
+    def error_of_model(self, *_: Any) -> Floats:
+        """Error of the modulus of each datum."""
+        errors: Floats = ERROR_OF_MODULI * self.scale
+        return errors
 
     def _moduli(self, case: Case) -> Floats:
         """Moduli of a case, which is changed."""
@@ -282,7 +328,9 @@ class Moduli:
 
 
 #: Data of one file: `quantity`, what each datum is, `at`, its velocity, time or frequency in SI
-#: units, `value`, and `sigma`, nan where there is no standard error; of shape (n,)
+#: units, `place`, all that it was measured at, `value`, `scale`, the size that relative errors
+#: refer to, `digit`, the unit of its last digit, and `sigma`, nan where there is no standard error;
+#: of shape (n,)
 Block = Impacts | Record | Moduli
 
 
@@ -317,12 +365,36 @@ def window(blocks: Sequence[Block], case: Case, material: str) -> tuple[float, f
     return float(rows[:, 0].min()), float(rows[:, 1].max())
 
 
-def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[str, Floats]:
-    """Heights and times in flight as velocities and coefficients of restitution."""
-    gravity = gravity_of(case)
+def last_digit(values: Floats) -> Floats:
+    """Unit of the last digit of each number of a column, shape (n,); nan where there is none.
 
-    def put(name: str, value: Floats, sigma: Floats) -> None:
-        columns[name] = value
+    The column has a number of decimals, or one of significant digits: what a number lacks of them
+    are zeros. Units turn the last ones of 16 digits, so 14 are looked at.
+    """
+    unit = np.full(len(values), np.nan)
+    good = np.flatnonzero(np.isfinite(values) & (values != 0))
+    if good.size:
+        texts = [f"{abs(value):.13e}".split("e") for value in values[good]]
+        digits = np.array([len(mantissa.replace(".", "").rstrip("0")) for mantissa, _ in texts])
+        power = np.array([float(exponent) for _, exponent in texts])
+        last = float((power - digits).min()) + 1
+        unit[good] = 10 ** np.maximum(last, power - digits.max() + 1)
+        unit[values == 0] = 10**last
+    return unit
+
+
+def _as_velocities(
+    source: str, columns: dict[str, Floats], case: Case
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Heights and times in flight as velocities and coefficients of restitution.
+
+    The second mapping has the units of the last digits of what was computed.
+    """
+    gravity = gravity_of(case)
+    digits: dict[str, Floats] = {}
+
+    def put(name: str, value: Floats, sigma: Floats, digit: Floats) -> None:
+        columns[name], digits[name] = value, digit
         if not np.isnan(sigma).all():
             columns[f"{name}_sigma"] = sigma
 
@@ -366,7 +438,11 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
         n = len(ratio)
         columns = {name: column[:n] for name, column in columns.items()}
         columns["velocity"] = speed[:-1]
-        put("cor_sphere", ratio, ratio * np.hypot(error[1:] / speed[1:], error[:-1] / speed[:-1]))
+        last = np.concatenate([np.zeros(len(drop[:1])), gravity * last_digit(times) / 2])
+        sigma, digit = (
+            ratio * np.hypot(part[1:] / speed[1:], part[:-1] / speed[:-1]) for part in (error, last)
+        )
+        put("cor_sphere", ratio, sigma, digit)
     if {"rebound_velocity", "rebound_height"} <= columns.keys():
         raise InputError(f"{source}: found both rebound_velocity and rebound_height")
     if "rebound_velocity" in columns:
@@ -375,13 +451,15 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
         rebound = np.abs(rebound)
         own = np.array(velocity_of(case))
         ratio = rebound / columns.get("velocity", own)
-        put("cor_sphere", ratio, ratio * sigma / rebound)
+        digit = ratio * last_digit(rebound) / rebound
+        put("cor_sphere", ratio, ratio * sigma / rebound, digit)
     if "rebound_height" in columns:
         height, sigma = take("rebound_height")
         speed = columns.get("velocity", np.array(velocity_of(case)))
         ratio = np.sqrt(2 * gravity * height) / speed
-        put("cor_sphere", ratio, ratio * sigma / height / 2)
-    return columns
+        sigma, digit = (ratio * part / height / 2 for part in (sigma, last_digit(height)))
+        put("cor_sphere", ratio, sigma, digit)
+    return columns, digits
 
 
 def observations(case: Case, source: Source, free: Sequence[str]) -> Block:

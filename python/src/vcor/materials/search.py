@@ -1,0 +1,243 @@
+"""Search of the parameters with which a case follows data: least squares over their logarithms."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .._differences import slopes
+from .._library import Error, Floats, InputError, NumericalError, UsageError
+from ..case import Case, number
+from .noise import Noise
+from .observations import Block, Impacts, velocity_of
+
+#: Step of the logarithms of parameters for derivatives of fourth order, which errors are made of
+STEP = 0.02
+#: The same for those of first order, which lead downhill
+STRIDE = 1e-3
+#: Points that a fit may start from, and how many of them do
+STARTS, REFINED = 64, 4
+#: Logarithm of the factor from the first guess beyond which parameters are not followed
+FARTHEST = math.log(1e12)
+#: Part of the largest slope below which a parameter has vanished
+VANISHED = 1e-3
+#: Rounds in which the errors of the data follow the fit, and their change that ends them
+ROUNDS, SETTLED = 8, 0.01
+
+
+class Problem:
+    """Residuals of all data over the logarithms x of the parameters."""
+
+    def __init__(
+        self, case: Case, free: Sequence[str], blocks: Sequence[Block],
+        errors: Mapping[str, float], bar: Any,
+    ) -> None:  # fmt: skip
+        self.case, self.free, self.blocks, self.bar = case, list(free), list(blocks), bar
+        self.impacts = [block for block in blocks if isinstance(block, Impacts)]
+        #: Velocities of the first impacts, or of the case [m/s]
+        own = np.array([velocity_of(case)])
+        self.speeds = next((block.velocity for block in self.impacts), own)
+        self.quantity = [name for block in blocks for name in block.quantity]
+        self.value = np.concatenate([block.value for block in blocks])
+        self.noise = Noise(blocks, errors)
+        values = np.array([number(case, address) for address in free])
+        if not (values > 0).all():
+            address = free[int(np.argmin(values > 0))]
+            what = f"found {case[address]}"
+            what = "the case does not give it" if case[address] is None else what
+            raise UsageError(f"{address}: {what}, expected a number > 0 as first guess")
+        guess = np.log(values)
+        self.guess = guess
+        # steps against an end of a range that is not known would hold up all parameters
+        self.low, self.high = (
+            np.array([_farthest(case, *one, reach) for one in zip(free, guess, strict=True)])
+            for reach in (-FARTHEST, FARTHEST)
+        )
+        self._last = np.empty(0), np.empty(0)
+        self._check_count()
+        #: Relative scatter of the data, if it is estimated
+        self.scatter = 1.0
+        #: Standard error of each datum
+        self.sigma = self.noise.sigma(self.scatter, self._errors_of_model(guess))
+
+    def _check_count(self) -> None:
+        """Refuse data that are too few, copies counted as one."""
+        places = [(k, *one) for k, block in enumerate(self.blocks) for one in block.place]
+        where = [*zip(self.quantity, places, strict=True)]
+        several = {*zip(where, self.value, strict=True)}
+        #: Degrees of freedom; what a record leaves unknown counts, too
+        self.dof = len(self.value) - len(self.free) - sum(block.unknowns for block in self.blocks)
+        few = self.dof < (1 if self.noise.estimated else 0)
+        # copies of a datum neither determine more nor tell how much data scatter
+        few |= len({*where}) < len(self.free)
+        few |= self.noise.estimated and len(several) <= len(self.free)
+        if few:
+            files = ", ".join(dict.fromkeys(block.source for block in self.blocks))
+            found = min(len({*where}), len(several))
+            raise InputError(f"{files}: found {found} distinct data for {len(self.free)} "
+                             "parameters, expected more")  # fmt: skip
+
+    def _errors_of_model(self, x: Floats) -> Floats:
+        errors = [block.error_of_model(self.case, self.free, np.exp(x)) for block in self.blocks]
+        return np.concatenate(errors)
+
+    def predict(self, x: Floats) -> Floats:
+        """Data for each row of x, shape (rows, data)."""
+        values = np.exp(x)
+        self.bar.update(len(x) * sum(len(impacts.velocity) for impacts in self.impacts))
+        return np.hstack([b.predict(self.case, self.free, values) for b in self.blocks])
+
+    def residuals(self, x: Floats) -> Floats:
+        """Residuals at one point, shape (data,); the last data are kept."""
+        if not np.array_equal(x, self._last[0]):
+            self._last = x.copy(), self.predict(x[None])[0] - self.value
+        residuals: Floats = self._last[1] / self.sigma
+        return residuals
+
+    def derivatives(self, x: Floats) -> tuple[Floats, float]:
+        """Derivatives of the residuals, shape (data, parameters), and their error, a norm."""
+        near, far = (
+            np.nan_to_num(slopes(lambda steps: self.predict(x + steps), len(x), step))
+            / self.sigma[:, None]
+            for step in (STEP, 2 * STEP)
+        )
+        return near, float(np.linalg.norm(near - far))
+
+    def elasticities(self, x: Floats, probe: Impacts, names: Sequence[str]) -> Floats:
+        """Derivatives of logarithms of quantities, shape (impacts and names, parameters)."""
+
+        def logarithms(steps: Floats) -> Floats:
+            found = probe.quantities(self.case, self.free, np.exp(x + steps), list(names))
+            return np.log(np.abs(found.reshape(len(steps), -1)))
+
+        return slopes(logarithms, len(x), STEP)
+
+    def downhill(self, x: Floats, which: Sequence[int]) -> Floats:
+        """Derivatives of the residuals by some of the parameters, one-sided: good for descent."""
+        steps = STRIDE * np.eye(len(x))[list(which)]
+        found = self.predict(x + steps)
+        if np.isnan(found).any():
+            steps = -steps
+            found = self.predict(x + steps)
+        change = (found - self.value) / self.sigma - self.residuals(x)
+        slope: Floats = np.nan_to_num(change / steps.sum(axis=1)[:, None]).T
+        return slope
+
+    def minimize(
+        self, x: Floats, which: Sequence[int], most: int = 60, tolerance: float = 1e-12,
+        *, ranges: tuple[Floats, Floats] | None = None, again: bool = True,
+    ) -> tuple[Floats, float]:  # fmt: skip
+        """Least squares over some of the parameters from x; inf where there is no result."""
+        which, x = list(which), x.copy()
+        low, high = ranges or (self.low, self.high)
+        x[which] = np.clip(x, low + 1e-6, high - 1e-6)[which]
+
+        def full(part: Floats) -> Floats:
+            x[which] = part
+            return x
+
+        if not np.isfinite(self.residuals(x)).all():
+            return x, math.inf
+        if which:
+            found = least_squares(
+                lambda part: self.residuals(full(part)),
+                x[which],
+                lambda part: self.downhill(full(part), which),
+                bounds=(low[which], high[which]),
+                xtol=1e-12, ftol=tolerance, gtol=1e-12, max_nfev=most,
+            )  # fmt: skip
+            full(found.x)
+            lengths = np.linalg.norm(found.jac, axis=0)
+            vanished = [which[i] for i in np.flatnonzero(lengths < VANISHED * lengths.max())]
+            if again and vanished:
+                # a modulus next to 0 has no slope that leads back
+                other = x.copy()
+                other[vanished] = self.guess[vanished]
+                other, chi2 = self.minimize(
+                    other, which, most, tolerance, ranges=ranges, again=False
+                )
+                if chi2 < 2 * found.cost:
+                    return other, chi2
+        return x, float(np.sum(self.residuals(x) ** 2))
+
+    def best(self, seed: int) -> tuple[Floats, float]:
+        """The smallest sum of squares from several starts, the first one the case itself."""
+        x = self.guess
+        spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
+        # of impacts that fail slowly one is enough
+        for impacts in self.impacts:
+            spread = spread[impacts.possible(self.case, self.free, np.exp(x + spread))]
+        starts = np.vstack([x, x + spread])
+        # in parts, for the bar and Ctrl-C
+        found_there = np.vstack([self.predict(part) for part in np.array_split(starts, 8)])
+        sums = np.sum(((found_there - self.value) / self.sigma) ** 2, axis=1)
+        order = np.argsort(np.where(np.isnan(sums), np.inf, sums), kind="stable")[:REFINED]
+        if not np.isfinite(sums[order[0]]):
+            raise NumericalError(f"{self.case.name}: no start of the parameters has a result for "
+                                 "all data")  # fmt: skip
+        every = range(len(x))
+        found: list[tuple[Floats, float]] = []
+        for i in dict.fromkeys([0, *order]):
+            found.append(self.minimize(starts[i], every, 30))
+            found.sort(key=lambda one: one[1])
+            # the same from two starts
+            if len(found) > 1 and found[1][1] < (1 + 1e-6) * found[0][1]:
+                break
+        return self.settle(self.in_order(found[0][0]))
+
+    def settle(self, x: Floats) -> tuple[Floats, float]:
+        """The smallest sum of squares near x, with errors of the data that belong to it."""
+        for _ in range(ROUNDS):
+            before = self.sigma
+            model = self._errors_of_model(x)
+            if self.noise.estimated:
+                misfit = self.sigma * self.residuals(x)
+                self.scatter = self.noise.scatter(misfit, model, self.dof)
+            self.sigma = self.noise.sigma(self.scatter, model)
+            x, chi2 = self.minimize(x, range(len(x)))
+            if (np.abs(self.sigma / before - 1) < SETTLED).all():
+                break
+        return x, chi2
+
+    def likelihood(self, x: Floats) -> float:
+        """-2 times the logarithm of the likelihood, but for a constant of the data."""
+        misfit, sigma = self.sigma * self.residuals(x), self.sigma
+        if self.noise.estimated:
+            model = self._errors_of_model(x)
+            sigma = self.noise.sigma(self.noise.scatter(misfit, model, len(misfit)), model)
+        excess = np.log(sigma**2 / self.noise.sigma(1.0, np.zeros(len(sigma))) ** 2)
+        return float(np.sum((misfit / sigma) ** 2 + excess * self.noise.estimated))
+
+    def in_order(self, x: Floats) -> Floats:
+        """The same with the terms of series in the order of their times in the guess."""
+        x = x.copy()
+        terms: dict[tuple[str, str], list[int]] = {}
+        for i, address in enumerate(self.free):
+            if found := re.fullmatch(r"(.+\.)(moduli|times|rates)\(\d+\)", address):
+                terms.setdefault((found[1], found[2]), []).append(i)
+        for (name, key), times in terms.items():
+            moduli = terms.get((name, "moduli"), [])
+            if key != "moduli" and len(moduli) == len(times):
+                wanted, order = np.argsort(self.guess[times]), np.argsort(x[times])
+                for places in (times, moduli):
+                    x[np.array(places)[wanted]] = x[np.array(places)[order]]
+        return x
+
+
+def _farthest(case: Case, address: str, inside: float, reach: float) -> float:
+    """How far the logarithm of a parameter may go from a value: its reach, or the range ends."""
+    case, end = case.copy(), inside + reach
+    far = end
+    while abs(end - inside) > 1e-9:
+        try:
+            case[address] = math.exp(far)
+            inside = far
+        except Error:
+            end = far
+        far = (inside + end) / 2
+    return inside
