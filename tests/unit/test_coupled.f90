@@ -49,8 +49,8 @@ program test_coupled
 contains
 
    !> L - 1 against the equations of motion and the conditions on both sides of the layer.
-   !> Potentials f of dilatation, f'' = a^2 f, and g of shear, g'' = b^2 g, have the displacements f' + k g
-   !> along z and -k f - g' along r, and the stresses mu ((k^2 + b^2) f + 2 k g') and
+   !> Potentials f of dilatation, f'' = a^2 f, and g of shear, g'' = b^2 g, have the displacements
+   !> f' + k g along z and -k f - g' along r, and the stresses mu ((k^2 + b^2) f + 2 k g') and
    !> mu (-2 k f' - (k^2 + b^2) g)
    subroutine test_response()
       ! the system has waves that grow and decay over the layer
@@ -539,8 +539,8 @@ contains
          call alone%solve(impact, other, error)
          call success(error, "an impact is solved by a new solver")
          associate (last => one%last)
-            call check(last == other%last .and. .not. any(abs(one%state(:, 0:last) &
-               - other%state(:, 0:last)) > 0.0_wp), "sharing changes no bit")
+            call check(last == other%last .and. all(abs(one%state(:col_sphere_velocity, 0:last) &
+               - other%state(:col_sphere_velocity, 0:last)) <= 0.0_wp), "sharing changes no bit")
          end associate
          deallocate (alone)
       end do
@@ -578,6 +578,8 @@ contains
       real(wp), parameter :: none(0) = 0.0_wp, gravity = 9.81_wp
       type(impact_t) :: impact
       type(trajectory_t) :: trajectory
+      type(power_law_t) :: fractional
+      type(error_t), allocatable :: error
       real(wp) :: work, cor
 
       call make_impact(impact, solid(1.0e6_wp, none, none, 1100.0_wp, 0.3_wp), base_half_space, &
@@ -593,6 +595,14 @@ contains
       call check(trajectory%status == contact_resting, "a sphere that is put down rests")
       call check_relative(trajectory%state(col_force, trajectory%last), impact%mass*gravity, &
          0.1_wp, "its weight is carried")
+
+      ! the force falls to a thirtieth of the weight, where long steps see an end, and rises again
+      call new_power_law(fractional, 2.2e5_wp, 3.87e4_wp, 0.6664_wp, error)
+      call fractional%set_constants(error, density=1100.0_wp, poisson_ratio=0.45_wp)
+      call make_impact(impact, fractional, base_sliding, 0.05_wp, 0.1844_wp, 3.128e-4_wp, &
+         0.2887_wp, exponent=2.0_wp, gravity=gravity)
+      call solve(impact, trajectory)
+      call check(trajectory%status == contact_resting, "a cone that nearly leaves rests")
    end subroutine test_gravity
 
    !> Contacts that do not end: a fluid, a sheet too light for the sphere, an end time

@@ -38,6 +38,8 @@ module vcor_solver_coupled
       type(slot_t) :: slot(slots)
       !> Place of the newest kernel
       integer :: newest = slots
+      !> Steps that the impact has taken so far
+      integer :: work = 0
    contains
       procedure :: solve
    end type coupled_t
@@ -53,6 +55,22 @@ module vcor_solver_coupled
       real(wp) :: depth = 0.0_wp, time_of_depth = 0.0_wp
    end type pair_t
 
+   !> What is known about the duration and the size of a contact
+   type :: search_t
+      !> Time by which the contact must have ended [s]
+      real(wp) :: end_time = 0.0_wp
+      !> Time that the contact outlasts [s], and the steps of the march that shows it [s]
+      real(wp) :: outlasted = 0.0_wp, dt = 0.0_wp
+      !> Steps of the next march that scouts
+      integer :: steps = 40
+      !> Number of earlier searches, which shorter steps have proved wrong
+      integer :: attempt = 0
+      !> Duration of all steps [s] and radius of the row of springs [m] for the contact
+      real(wp) :: window = 0.0_wp, radius = 0.0_wp
+   contains
+      procedure :: note
+   end type search_t
+
    !> A largest value
    type :: peak_t
       real(wp) :: value = 0.0_wp
@@ -60,12 +78,12 @@ module vcor_solver_coupled
       real(wp) :: time = 0.0_wp
    end type peak_t
 
-   !> Steps of the march that scouts, of the coarsest mesh, and the finest mesh, of 2560 steps
-   integer, parameter :: crude_steps = 40, first_steps = 160, finest = 4
+   !> Steps of the coarsest mesh, the finest mesh, and its steps
+   integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
+   !> Steps of all marches of an impact, which a contact whose end is hard to find may take
+   integer, parameter :: most_work = 12*most_steps
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp
-   !> Number of times that the steps of the scout are halved
-   integer, parameter :: most_attempts = 6
    !> Ratios to which window and radius are rounded up, and their margin
    real(wp), parameter :: window_ratio = 2.0_wp**0.125_wp, radius_ratio = 2.0_wp**0.25_wp
    real(wp), parameter :: margin = 1.04_wp
@@ -91,18 +109,17 @@ contains
 
       type(pair_t) :: before, now
       type(course_t) :: course
-      real(wp) :: end_time, window, radius, cor_error
-      integer :: attempt, level, status
+      type(search_t) :: search
+      real(wp) :: cor_error
+      integer :: level, status
 
-      end_time = self%settings%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
-      attempt = 0
+      search%end_time = self%settings%end_time
+      if (.not. search%end_time > 0.0_wp) search%end_time = impact%patience(impact%time_scale())
+      self%work = 0
       level = -1
-      window = 0.0_wp
-      radius = 0.0_wp
       do
          if (level < 0) then
-            call scout(self, impact, attempt, end_time, window, radius, course, error)
+            call scout(self, impact, search, course, error)
             if (allocated(error)) return
             if (course%status /= course_ended) then
                call record_contact(course, impact, trajectory)
@@ -110,18 +127,18 @@ contains
             end if
             level = 0
          end if
-         call solve_pair(self, impact, mesh_of(level, impact%face, window, radius), now, error)
+         call solve_pair(self, impact, mesh_of(level, impact%face, search%window, search%radius), &
+            now, error)
          if (allocated(error)) return
          status = now%coarse%status
          if (status == course_ended) status = now%fine%status
          if (status /= course_ended) then
             ! what the scout has seen is not so
-            attempt = attempt + 1
+            if (status == course_outlasts) call search%note(search%window, now%coarse%dt)
+            search%steps = 2*search%steps
+            search%attempt = search%attempt + 1
             level = -1
-            if (attempt <= most_attempts) cycle
-            call raise(error, error_numerical, 'the end of the contact depends on the length of ' &
-               //'the steps, however short: the plate is too light or too soft for the sphere')
-            return
+            cycle
          end if
          if (level > 0) then
             cor_error = distance(before, now, impact)
@@ -142,7 +159,7 @@ contains
       trajectory%cor_error = cor_error
       trajectory%contact_time_error = abs(now%contact_time - before%contact_time)
       trajectory%max_force_error = abs(now%max_force - before%max_force)
-      if (now%contact_time > end_time) trajectory%status = contact_lasting
+      if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
 
    !> Estimated error of the extrapolated coefficient of restitution: what the steps change, or what
@@ -180,19 +197,27 @@ contains
          + int(min(3.0_wp*radius/face%thickness, real(most_for_layer, wp)))
    end function mesh_of
 
-   !> March with few steps to find how long the contact lasts and how large it becomes. A sphere
-   !> that rests, or does not leave before the end time, is marched again with steps that resolve it
-   subroutine scout(self, impact, attempt, end_time, window, radius, course, error)
+   !> Note that the contact outlasts a time
+   pure subroutine note(self, time, dt)
+      class(search_t), intent(inout) :: self
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> Steps of the march that shows it [s]
+      real(wp), intent(in) :: dt
+
+      if (time < self%outlasted) return
+      self%outlasted = time
+      self%dt = dt
+   end subroutine note
+
+   !> March with few steps to find how long the contact lasts and how large it becomes. Of two
+   !> marches that contradict each other that with the shorter steps is believed. A sphere that
+   !> rests, or does not leave before the end time, is marched again with steps that resolve it
+   subroutine scout(self, impact, search, course, error)
       type(coupled_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
-      !> Number of earlier attempts, which shorter steps have proved wrong
-      integer, intent(in) :: attempt
-      !> Time by which the contact must have ended [s]
-      real(wp), intent(in) :: end_time
-      !> Duration of all steps for the contact [s]
-      real(wp), intent(out) :: window
-      !> Radius of the row of springs for the contact [m]
-      real(wp), intent(out) :: radius
+      !> What is known, on return with a window and a radius for a contact that ends
+      type(search_t), intent(inout) :: search
       !> Course; of a contact that does not end, all that is known
       type(course_t), intent(out) :: course
       type(error_t), allocatable, intent(out) :: error
@@ -201,45 +226,46 @@ contains
       real(wp), parameter :: resolved = 8.0_wp
       ! growth of a window or row that is too short, and how much longer than expected they begin
       real(wp), parameter :: growth = 2.0_wp**0.5_wp, spare = 1.25_wp
-      integer, parameter :: most_tries = 100
+      type(course_t) :: lasting
       type(mesh_t) :: mesh
       real(wp) :: time_scale
-      integer :: steps, tries
 
-      window = 0.0_wp
-      radius = 0.0_wp
       time_scale = impact%time_scale()
-      mesh = mesh_t(crude_steps, 32, 5)
-      if (attempt > 0) mesh = mesh_t(crude_steps*2**attempt, 112, 8)
-      steps = mesh%steps
-      mesh%window = rounded(spare*impact%law%contact_time*time_scale, growth)
+      mesh = mesh_t(search%steps, 32, 5)
+      if (search%attempt > 0) mesh = mesh_t(search%steps, 112, 8)
+      mesh%window = rounded(max(spare*impact%law%contact_time*time_scale, search%outlasted), growth)
       mesh%radius = impact%law%radius(impact%factor, &
          impact%law%depth*impact%speed_scale(time_scale)*time_scale)
       if (is_curved(impact)) mesh%radius = rounded(spare*mesh%radius, growth)
-      do tries = 1, most_tries
+      do
          call run(self, impact, mesh, course, error)
-         if (allocated(error) .or. course%status == course_ended) exit
+         if (allocated(error)) return
          if (course%status == course_outgrows) then
             mesh%radius = growth*mesh%radius
-            cycle
+         else if (course%status == course_ended) then
+            if (course%contact_time > search%outlasted .or. course%dt <= search%dt) exit
+            ! steps this long do not resolve the contact
+            if (2*mesh%steps > most_steps) then
+               if (lasting%steps > 0) course = lasting
+               return
+            end if
+            mesh%steps = 2*mesh%steps
+         else
+            call search%note(mesh%window, course%dt)
+            lasting = course
+            if (course%rests(impact%mass*impact%gravity) .or. mesh%window >= search%end_time) then
+               if (course%dt*resolved <= time_scale .or. mesh%steps == most_steps) return
+               mesh%steps = min(most_steps, 4*ceiling(0.25_wp*min(real(most_steps, wp), &
+                  resolved*mesh%window/time_scale)))
+            else
+               mesh%window = growth*mesh%window
+            end if
          end if
-         if (course%rests(impact%mass*impact%gravity) .or. mesh%window >= end_time) then
-            if (mesh%steps > steps) exit
-            mesh%steps = 4*ceiling(min(0.25_wp*resolved*mesh%window/time_scale, &
-               0.25_wp*real(first_steps*2**finest, wp)))
-            if (mesh%steps > steps) cycle
-            exit
-         end if
-         mesh%steps = steps
-         mesh%window = growth*mesh%window
       end do
-      if (tries > most_tries) call raise(error, error_numerical, 'neither the duration nor the ' &
-         //'radius of the contact can be found')
-      if (allocated(error) .or. course%status /= course_ended) return
-      window = rounded(margin*course%contact_time, window_ratio)*window_ratio**attempt
-      radius = mesh%radius
-      if (is_curved(impact)) radius = rounded(margin*maxval(course%radius), radius_ratio) &
-         *radius_ratio**attempt
+      search%window = rounded(margin*course%contact_time, window_ratio)*window_ratio**search%attempt
+      search%radius = mesh%radius
+      if (is_curved(impact)) search%radius = rounded(margin*maxval(course%radius), radius_ratio) &
+         *radius_ratio**search%attempt
    end subroutine scout
 
    !> Whether the contact has no fixed radius, which only that of a flat punch has
@@ -271,6 +297,12 @@ contains
 
       integer :: i
 
+      self%work = self%work + mesh%steps
+      if (self%work > most_work) then
+         call raise(error, error_numerical, 'the end of the contact depends on the length of the ' &
+            //'steps, however short: the plate is too light or too soft for the sphere')
+         return
+      end if
       do i = 1, slots
          if (.not. allocated(self%slot(i)%kernel)) cycle
          if (self%slot(i)%kernel%is_for(impact%face, mesh)) exit
