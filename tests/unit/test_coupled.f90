@@ -42,6 +42,7 @@ program test_coupled
    call test_sharing()
    call test_punch()
    call test_gravity()
+   call test_early_force()
    call test_no_end()
    call test_refusals()
    call finish()
@@ -605,7 +606,21 @@ contains
       call check(trajectory%status == contact_resting, "a cone that nearly leaves rests")
    end subroutine test_gravity
 
-   !> Contacts that do not end: a fluid, a sheet too light for the sphere, an end time
+   !> On a light plate the force is largest long before the contact ends, and as exact
+   subroutine test_early_force()
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+
+      call make_impact(impact, solid(7.798237e6_wp, [57.311808e6_wp], [98.5612_wp], 1100.0_wp, &
+         0.35_wp), base_free, 0.00986283_wp, 12.743651_wp, 0.02307016_wp, 0.17439484_wp)
+      call solve(impact, trajectory)
+      call check(trajectory%time_of_max_force < 0.1_wp*trajectory%state(col_time, &
+         trajectory%last), "the contact goes on for long")
+      ! by 1280 steps in a fifth of the time
+      call check_relative(trajectory%max_force, 620.65_wp, 1.0e-3_wp, "its largest force")
+   end subroutine test_early_force
+
+   !> Contacts that do not end: on a sheet too light for the sphere, or before the end time
    subroutine test_no_end()
       real(wp), parameter :: none(0) = 0.0_wp
       type(coupled_t), allocatable :: solver

@@ -82,6 +82,10 @@ module vcor_solver_coupled
    integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
    !> Steps of all marches of an impact, which a contact whose end is hard to find may take
    integer, parameter :: most_work = 12*most_steps
+   !> Parts of a largest value down to which a parabola is fitted: of the force, as springs that come
+   !> into contact one by one make steps in it, where a sine still differs by 1e-5 from a parabola,
+   !> and of the displacement
+   real(wp), parameter :: noisy = 0.97_wp, smooth = 0.999_wp
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp
    !> Ratios to which window and radius are rounded up, and their margin
@@ -107,6 +111,8 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! relative error of the largest force from which it is computed again, if it comes early
+      real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
       type(pair_t) :: before, now
       type(course_t) :: course
       type(search_t) :: search
@@ -159,6 +165,10 @@ contains
       trajectory%cor_error = cor_error
       trajectory%contact_time_error = abs(now%contact_time - before%contact_time)
       trajectory%max_force_error = abs(now%max_force - before%max_force)
+      if (trajectory%max_force_error > sharp*now%max_force .and. now%time_of_max_force &
+          < early*now%contact_time) call resolve_peak(self, impact, search%radius, trajectory, &
+         error)
+      if (allocated(error)) return
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
 
@@ -358,16 +368,51 @@ contains
       associate (a => pair%coarse, b => pair%fine)
          pair%contact_time = limit(a%contact_time, b%contact_time)
          pair%cor = limit(a%cor(impact), b%cor(impact))
-         one = peak(a%force(0:a%steps), a%dt)
-         two = peak(b%force(0:b%steps), b%dt)
+         one = peak(a%force(0:a%steps), a%dt, noisy)
+         two = peak(b%force(0:b%steps), b%dt, noisy)
          pair%max_force = limit(one%value, two%value)
          pair%time_of_max_force = limit(one%time, two%time)
-         one = peak(a%z(0:a%steps), a%dt)
-         two = peak(b%z(0:b%steps), b%dt)
+         one = peak(a%z(0:a%steps), a%dt, smooth)
+         two = peak(b%z(0:b%steps), b%dt, smooth)
          pair%depth = limit(one%value, two%value)
          pair%time_of_depth = limit(one%time, two%time)
       end associate
    end subroutine solve_pair
+
+   !> Compute the largest force again in a shorter window, as on a light plate the contact lasts
+   !> long after it. What comes later does not change it
+   subroutine resolve_peak(self, impact, radius, trajectory, error)
+      type(coupled_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      !> Radius of the row of springs [m]
+      real(wp), intent(in) :: radius
+      !> The course of the impact, recorded
+      type(trajectory_t), intent(inout) :: trajectory
+      type(error_t), allocatable, intent(out) :: error
+
+      ! window over the time of the largest force
+      real(wp), parameter :: longer = 3.0_wp
+      type(peak_t) :: top(2)
+      type(course_t) :: course
+      type(mesh_t) :: mesh
+      real(wp) :: force(0:1)
+      integer :: level, i
+
+      do level = 0, 1
+         mesh = mesh_of(level, impact%face, &
+            rounded(longer*trajectory%time_of_max_force, window_ratio), radius)
+         do i = 2, 1, -1
+            call run(self, impact, mesh, course, error)
+            if (allocated(error) .or. course%status == course_outgrows) return
+            top(i) = peak(course%force(0:course%steps), course%dt, noisy)
+            mesh%steps = mesh%steps/2
+         end do
+         force(level) = limit(top(1)%value, top(2)%value)
+      end do
+      trajectory%max_force = force(1)
+      trajectory%max_force_error = abs(force(1) - force(0))
+      trajectory%time_of_max_force = limit(top(1)%time, top(2)%time)
+   end subroutine resolve_peak
 
    !> Extrapolate to steps of no length
    elemental function limit(coarse, fine)
@@ -380,17 +425,18 @@ contains
       limit = (4.0_wp*fine - coarse)/3.0_wp
    end function limit
 
-   !> Largest value of a series: the top of a parabola fitted around it, as springs that come into
-   !> contact one by one make steps in the force
-   pure function peak(value, dt)
+   !> Largest value of a series, the top of a parabola fitted around it
+   pure function peak(value, dt, high)
       !> Values at equal steps, shape (0:)
       real(wp), intent(in) :: value(0:)
       !> Step [s]
       real(wp), intent(in) :: dt
+      !> Part of the largest value down to which it is fitted [-]
+      real(wp), intent(in) :: high
       type(peak_t) :: peak
 
-      ! part of the series on each side, and part of the largest value, within which it is fitted
-      real(wp), parameter :: part = 0.025_wp, high = 0.95_wp
+      ! part of the series on each side that is fitted at the most
+      real(wp), parameter :: part = 0.1_wp
       real(wp) :: second, slope, mean, square, fourth, top
       integer :: middle, reach, most, i
 
@@ -472,10 +518,10 @@ contains
          trajectory%final = n
          trajectory%status = contact_lasting
          if (course%rests(impact%mass*impact%gravity)) trajectory%status = contact_resting
-         top = peak(course%force(0:n), course%dt)
+         top = peak(course%force(0:n), course%dt, noisy)
          trajectory%max_force = top%value
          trajectory%time_of_max_force = top%time
-         top = peak(course%z(0:n), course%dt)
+         top = peak(course%z(0:n), course%dt, smooth)
          trajectory%max_indentation = top%value
          trajectory%time_of_max_indentation = top%time
          trajectory%contact_radius = maxval(course%radius)

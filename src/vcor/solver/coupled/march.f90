@@ -118,12 +118,8 @@ contains
                end do
             end if
             balance%gap = impact%free_path(real(k, wp)*course%dt) - profile
-            if (kernel%remembers) then
-               do i = 1, k - 1
-                  balance%gap(:balance%reach) = balance%gap(:balance%reach) &
-                     - kernel%local(k - i)*pressure(:balance%reach, i)
-               end do
-            end if
+            if (kernel%remembers) call subtract_past(balance%gap(:balance%reach), pressure, &
+               kernel%local(:k - 1))
             call spread_hats(kernel, -bend, balance%gap)
             call find_pushing(balance, kernel, error)
             if (allocated(error)) return
@@ -188,6 +184,31 @@ contains
          allocate (self%pushes(springs), source=.false.)
       end associate
    end subroutine prepare
+
+   !> Subtract what earlier pressures have left in the springs, four steps at a time, as the sum over
+   !> the steps would otherwise be loaded and stored for each
+   pure subroutine subtract_past(gap, pressure, local)
+      !> Approach of the bodies over the springs [m]
+      real(wp), contiguous, intent(inout) :: gap(:)
+      !> Pressures of earlier steps [N/m], shape (springs, >= steps)
+      real(wp), contiguous, intent(in) :: pressure(:, :)
+      !> Weights of the springs from lag 0 to that of the first step, shape (0:steps)
+      real(wp), intent(in) :: local(0:)
+
+      integer :: i, n, steps
+
+      n = size(gap)
+      steps = ubound(local, 1)
+      do i = 1, steps - 3, 4
+         gap = gap - (local(steps + 1 - i)*pressure(:n, i) &
+            + local(steps - i)*pressure(:n, i + 1) &
+            + local(steps - 1 - i)*pressure(:n, i + 2) &
+            + local(steps - 2 - i)*pressure(:n, i + 3))
+      end do
+      do i = steps - modulo(steps, 4) + 1, steps
+         gap = gap - local(steps + 1 - i)*pressure(:n, i)
+      end do
+   end subroutine subtract_past
 
    !> Add a function on the hats to one on the springs
    pure subroutine spread_hats(kernel, hats, springs)
