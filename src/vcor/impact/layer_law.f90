@@ -248,9 +248,9 @@ contains
          do j = 1, degree + 1
             x = at_end/real(panels, wp)*(real(i, wp) - 0.5_wp + 0.5_wp*point(j))
             call find_radius(x, max(a, 0.5_wp*x))
-            f(j, i) = force*equation%profile%area(a, equation%first_node, equation%first_weight) &
-               /(power/(power + 1.0_wp)*x**(power + 1.0_wp))
-            if (.not. power > 0.0_wp) f(j, i) = force
+            f(j, i) = force
+            if (power > 0.0_wp) f(j, i) = force*equation%profile%area(a, equation%first_node, &
+               equation%first_weight)/(power/(power + 1.0_wp)*x**(power + 1.0_wp))
             g(j, i) = a/x
          end do
       end do
