@@ -7,6 +7,7 @@ module vcor_verify
       weak_maxwell, zener
    use vcor_verify_golden, only : beyond, golden, printed
    use vcor_verify_kelvin_voigt, only : exact, pade, series, zener_relation
+   use vcor_verify_layer, only : layer
    use vcor_verify_law, only : evaluate_law, law_t, verdict_t
    implicit none
    private
@@ -14,7 +15,7 @@ module vcor_verify
    public :: law_count, law_t, verdict_t, evaluate_law, build_law
 
    !> Number of laws
-   integer, parameter :: law_count = 16
+   integer, parameter :: law_count = 17
 
 contains
 
@@ -56,6 +57,8 @@ contains
          call thick_body(law)
       case (15)
          call thin_body(law)
+      case (16)
+         call layer(law)
       case (law_count)
          call printed(law)
       case default

@@ -173,7 +173,7 @@ contains
 
       chi = sqrt(radius*s)/thickness
       do i = 1, size(bases)
-         call make_law(law, bases(i), 0.5_wp, 1.0e6_wp)
+         call make_law(law, bases(i), 0.5_wp, 1.0e8_wp)
          call check_relative(law%u(s), s**1.5_wp, accuracy, "a thick layer is a half space")
          call make_law(law, bases(i), 0.5_wp, thickness)
          rest = law%u(s)/s**1.5_wp - 1.0_wp - 2.0_wp*moment(i)*chi

@@ -12,11 +12,13 @@ module vcor_verify_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_series
+   use vcor_impact_layer_law, only : lay, layer_t, profile_t
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_body, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_separated
+   use vcor_impact_response, only : base_bonded
    use vcor_kinds, only : pi, wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_solver, only : solve_impact, solver_settings_t
@@ -66,6 +68,8 @@ module vcor_verify_law
       real(wp) :: radius = 0.01_wp
       !> Half thickness of the plate [m]
       real(wp) :: half_thickness = 0.02_wp
+      !> Thickness of a layer that is bonded to a rigid floor [m]; 0: a half space
+      real(wp) :: layer = 0.0_wp
    contains
       procedure :: get_impact
    end type strike_t
@@ -291,6 +295,9 @@ contains
          call new_plate(plate, body, self%half_thickness, self%waves, error)
       if (.not. allocated(error)) call new_impact(impact, self%velocity, self%mass, self%radius, &
          0.0_wp, modulus, plate, error, law)
+      if (.not. allocated(error) .and. self%layer > 0.0_wp) call lay(impact%law, &
+         layer_t(base_bonded, body%poisson_ratio(), 1.0_wp, self%layer), profile_t(), &
+         impact%factor, error)
    end subroutine get_impact
 
    !> Build a material with the density of the plates
