@@ -420,6 +420,11 @@ BAD = {
     "empty": ("", ["no numbers"]),
     "blank": ("\n \n", ["no numbers"]),
     "head only": ("t [s],E [Pa]\n", ["no numbers"]),
+    "two of one name": ("f [Hz],E' [MPa],E'' [MPa],E' [MPa]\n1,2,1,3\n2,3,1,4\n",
+                        ["two columns of storage modulus", "--columns", "storage_modulus=4"]),
+    "compliance and tangent": ("f [Hz],Storage compliance [1/Pa],tan delta\n1,2,1\n2,3,1\n",
+                               ["no column of the storage modulus"]),
+    "axes": ("Time [s],Fx [N],Fz [N]\n1,2,1\n2,3,1\n", ["--columns \"force=Fz [N]\""]),
     "moduli of both kinds": ("t [s],f [Hz],E(t) [Pa],E' [Pa],E'' [Pa]\n1,1,5,5,1\n2,2,4,6,1\n",
                              ["against time"]),
 }  # fmt: skip

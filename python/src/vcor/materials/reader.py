@@ -125,13 +125,13 @@ class Reader:
             return "relaxation"
         if "shift_factor" in names:
             return "shift"
+        if {"loss_tangent", "frequency"} <= names:
+            return "dynamic"
         history, impact = quantities()
         if times and names & (history | {"force", "acceleration"}):
             return "record"
         if names & (impact | _IMPACTS) or any(is_address(name) for name in names):
             return "impacts"
-        if {"loss_tangent", "frequency"} <= names:
-            return "dynamic"
         return ""
 
     def _lacks(self, table: Table, kind: str) -> list[str]:
@@ -520,11 +520,12 @@ class Reader:
         if table.flaw:
             return InputError(table.flaw)
         if not kind:
-            could = free[-1].text if free else "HEAD"
+            last = free[-1] if free else Head("HEAD")
+            could = _could_be(last, _known(table))
             return InputError(
-                f"{place}: found the columns {told}, none of which is a quantity that is known, "
-                "expected a relaxation modulus, storage and loss modulus, force, cor ...; if "
-                f'one is, say which: --columns "relaxation_modulus={could}"'
+                f"{place}: found the columns {told}, none of which is a measured quantity that is "
+                f"known; if '{last.text.strip()}' is {' or '.join(could)}, say which: --columns "
+                f'"{could[0]}={last.text.strip()}"'
             )
         lacks = self._lacks(table, kind)
         words = " and of the ".join(name.replace("_", " ") for name in lacks)
@@ -577,6 +578,18 @@ def _known(table: Table) -> set[str]:
         and not head.sigma
         and not (head.name == "velocity" and plain_unit(head.unit).startswith("rad/"))
     }
+
+
+def _could_be(head: Head, names: set[str]) -> list[str]:
+    """Quantities that a column may be by its unit, the likeliest one first."""
+    told = quantities_of(head.unit) if head.unit else []
+    found = [one.name for one in QUANTITIES.values() if one.unit in told and one.name not in names]
+    found = [name for name in found if name not in ("run_time", "event_time", "angular_frequency")]
+    if not found:
+        found = ["relaxation_modulus", "storage_modulus", "force", "cor"]
+    if "frequency" in names and "relaxation_modulus" in found:
+        found.remove("relaxation_modulus")
+    return found[:4]
 
 
 def _first_comma(rows: Sequence[Row], column: Column) -> str:
