@@ -154,6 +154,20 @@ def test_commands(folder, page):
         shell(folder, block, text_of(page.relative_to(ROOT)))
 
 
+def test_the_walk_from_dma_to_restitution(folder):
+    """The numbers of the page, from its own commands."""
+    page = "docs/dma_to_restitution.md"
+    for block in blocks(page, "sh"):
+        shell(folder, block, text_of(page))
+    rows = [line for line in (folder / "walk/drop_summary.csv").read_text().splitlines() if line[:1] != "#"]
+    names, *rows = [row.split(",") for row in rows]
+    cor = [float(row[names.index("cor")]) for row in rows]
+    shown = re.search(r"with ([\d.]+) at 10 C; the coefficient falls to ([\d.]+) at 60 C", text_of(page))
+    assert [f"{cor[0]:.3f}", f"{cor[-1]:.2f}"] == [shown[1], shown[2]]
+    head = blocks(page, "sh")[0]
+    assert shell(folder, head) in text_of(page)
+
+
 def test_the_loop_prints_what_the_page_shows(folder):
     page = text_of("docs/sweeps.md")
     loop = next(block for block in blocks("docs/sweeps.md", "sh") if "for v in" in block)
