@@ -12,6 +12,7 @@ from conftest import ROOT
 import vcor
 from vcor.materials import identification
 from vcor.materials.data import read_data
+from vcor.materials.misfit import are_alike
 from vcor.materials.observations import read_columns
 
 DATA = ROOT / "python" / "tests" / "data"
@@ -354,7 +355,32 @@ def test_records_on_a_baseline(sls, offset, sign, mass):
     low, high = found.estimates[0].interval_95
     assert low < 1200 < high and high / low < 1.05
     assert ("turned over" in str(found)) is (sign < 0)
+    assert "no noise" not in str(found) and not found.alike
     assert f"a baseline of {sign * offset * (mass or 1):.2g}"[:-1] in str(found)
+
+
+def test_noise_is_hardly_ever_called_alike():
+    """One draw of a thousand for noise, all draws for waves."""
+    rng, at = np.random.default_rng(5), np.linspace(0, 1, 40)
+    basis = np.vander(at, 3)
+    q = np.linalg.qr(basis)[0]
+    draws = rng.standard_normal((4000, 40))
+    draws -= draws @ q @ q.T
+    assert sum(are_alike(r, basis) for r in draws) <= 14
+    assert sum(are_alike(r + 3 * np.sin(20 * at), basis) for r in draws[:100]) >= 98
+    assert not are_alike(np.zeros(40), basis) and not are_alike(draws[0, :6], basis[:6])
+
+
+def test_misfits_that_are_no_noise(sls):
+    """A sensor that rings, which no material explains."""
+    history = sls.history()
+    at, force = history.time.values, history.force.values
+    at = np.linspace(0, at[-1], 200)
+    force = np.interp(at, history.time, force)
+    ringing = 0.02 * force.max() * np.sin(2 * np.pi * at / at[-1] * 7)
+    sls["rubber.beta"] = 1000.0
+    found = vcor.identify(sls, {"time": at, "force": force + ringing}, ["rubber.beta"])
+    assert found.alike == ("data",) and "misfits of data are no noise" in str(found)
 
 
 LAB = {

@@ -30,7 +30,8 @@ from .data import Columns, Units, add_data_options, columns_option
 from .fit import fit
 from .identification_report import figure, report
 from .limits import BESIDE, OPEN, Better, Fit, Interval
-from .observations import File, Record, Source, materials_of, observations, sharpen, window
+from .misfit import are_alike
+from .observations import File, Impacts, Record, Source, materials_of, observations, sharpen, window
 from .search import STEP, Problem
 
 #: Accuracy of the impacts; derivatives are differences of them
@@ -39,6 +40,8 @@ ACCURACY = 1e-9
 BETTER = 5
 #: Probability of a larger misfit below which the model does not follow the data
 FOLLOWS = 1e-3
+#: Mean square of misfits, in their errors, below which rounding and the solution explain them
+UNSEEN = 0.5
 #: Keys of a material that stay with another model
 KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_temperature",
         "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift", "valid_temperature_from",
@@ -97,6 +100,8 @@ class Identification:
     validity: str = "good"
     #: Which columns of the files were taken for what
     taken: tuple[str, ...] = ()
+    #: Files whose misfits are no noise: neighbours are alike
+    alike: tuple[str, ...] = ()
 
     def __getitem__(self, address: str) -> float:
         """Value of a parameter."""
@@ -123,6 +128,7 @@ class Identification:
             degrees_of_freedom=self.dof,
             relative_error=self.relative_error,
             follows=self.follows,
+            misfits_alike=list(self.alike),
             aic=self.aic,
             bic=self.bic,
             window=self.window,
@@ -276,6 +282,7 @@ def _judged(
         chi2=chi2,
         dof=dof,
         taken=tuple(filter(None, taken)),
+        alike=_alike(problem, x, derivatives),
         follows=problem.noise.estimated or chi2 <= float(chdtri(max(dof, 1), FOLLOWS)),
         relative_error=problem.noise.relative(problem.sigma) if problem.noise.estimated else None,
         combinations=tuple(
@@ -295,6 +302,27 @@ def _judged(
         model=model,
         validity=_validity(problem, case),
     )
+
+
+def _alike(problem: Problem, x: Floats, derivatives: Floats) -> tuple[str, ...]:
+    """Files of records and moduli in which neighbouring misfits are too much alike for noise."""
+    r, found, first = problem.residuals(x), [], 0
+    predicted = problem.predict(x[None])[0] / problem.sigma
+    for block in problem.blocks:
+        part = slice(first, first + len(block.value))
+        first = part.stop
+        if isinstance(block, Impacts) or r[part] @ r[part] < UNSEEN * len(block.value):
+            continue
+        own = derivatives[part]
+        if isinstance(block, Record):
+            # the baseline and the start are fitted, too
+            more = [1 / problem.sigma[part], np.gradient(predicted[part], block.at)]
+            own = np.column_stack([own, *more])
+        n = len(block.value) // len(set(block.quantity))
+        parts = range(0, len(own), n)
+        if any(are_alike(r[part][i : i + n], own[i : i + n]) for i in parts):
+            found.append(block.source)
+    return tuple(found)
 
 
 def _estimate(

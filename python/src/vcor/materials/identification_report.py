@@ -51,6 +51,9 @@ def report(found: Identification) -> str:
         lines += ["", f"error of each datum {percent(found.relative_error)}, from the misfit and "
                   f"the digits ({found.dof} degrees of freedom)"]  # fmt: skip
     lines[-1] += f", AIC {found.aic:.1f}, BIC {found.bic:.1f}"
+    for source in found.alike:
+        lines.append(f"the misfits of {source} are no noise, neighbours are alike: the model does "
+                     "not describe these data, and the intervals are too narrow")  # fmt: skip
     if not found.follows:
         lines.append("the data scatter more than their errors: the model (waves, law, material) "
                      "does not describe them")  # fmt: skip

@@ -530,10 +530,12 @@ class Reader:
         lacks = self._lacks(table, kind)
         words = " and of the ".join(name.replace("_", " ") for name in lacks)
         names = " and ".join(QUANTITIES[name].example for name in lacks)
-        could = free[-1].text if free else "HEAD"
+        si = QUANTITIES[lacks[0]].unit
+        fit = [head.text for head in free if head.unit and size(head.unit, si)]
+        one = fit[-1].strip() if fit else "HEAD"
         return InputError(
             f"{place}: found {told}, but no column of the {words}, expected one named as "
-            f'{names}, or --columns "{lacks[0]}={could}"'
+            f'{names}, or --columns "{lacks[0]}={one}"'
         )
 
     def shear(self) -> bool | None:
