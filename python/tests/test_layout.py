@@ -12,7 +12,13 @@ def imports(path, known):
     """Modules of the package that a file imports, at its head or within a procedure."""
     found = set()
     own = path.relative_to(ROOT).parent.parts
-    for node in ast.walk(ast.parse(path.read_text())):
+    tree = ast.parse(path.read_text())
+    # names of types alone are no arrow
+    tree.body = [
+        one for one in tree.body
+        if not (isinstance(one, ast.If) and "TYPE_CHECKING" in ast.dump(one.test))
+    ]  # fmt: skip
+    for node in ast.walk(tree):
         if not isinstance(node, ast.ImportFrom) or not node.level:
             continue
         base = [*own[: len(own) + 1 - node.level], *(node.module or "").split(".")]
