@@ -91,6 +91,22 @@ def test_coefficients_alone_do_not_fix_a_modulus():
     assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
 
 
+def test_a_pad_is_a_layer_and_no_half_space():
+    """Contact times and forces of a pad on steel: the half space is 68 % too stiff a rubber."""
+    pad = vcor.read(ROOT / "examples" / "rubber_pad_on_steel.nml")
+    data = ROOT / "examples" / "identification" / "pad.csv"
+    errors = {"contact_time": 0.01, "resilience": 0.004, "max_force": 0.01}
+    free = ["rubber.equilibrium_modulus", "rubber.moduli(3)"]
+    found = vcor.identify(pad, data, free, errors=errors)
+    for estimate, truth in zip(found.estimates, (4e6, 8e5), strict=True):
+        assert abs(estimate.value - truth) < 2 * estimate.standard_error
+    assert found.chi2 < 20
+    pad["plate.base"], pad["plate.waves"] = "free", "none"
+    wrong = vcor.identify(pad, data, free, errors=errors)
+    assert wrong["rubber.equilibrium_modulus"] > 1.6 * 4e6
+    assert wrong.chi2 > 100
+
+
 def test_errors_of_contact_times_give_those_of_the_parameters():
     # linear algebra on elasticities of another function
     data = columns()

@@ -51,7 +51,7 @@ module vcor_impact_law
       logical :: receding = .false.
       !> Ratio of u to s^n; unallocated: 1
       type(law_table_t), allocatable, private :: table
-      !> Numbers that the table is for
+      !> Numbers that the table is for, the first one its base
       real(wp), private :: about(6) = 0.0_wp
       !> Unit of length of the table [m], and half-space contact radius in it over s^(n-1)
       !> [m^(1-n)]
@@ -69,6 +69,7 @@ module vcor_impact_law
       procedure, non_overridable :: solve
       procedure, non_overridable :: time_scale
       procedure, non_overridable :: is_about
+      procedure, non_overridable :: is_of_layer
       procedure, non_overridable :: adopt
       procedure, non_overridable :: resize
       procedure, non_overridable :: stiffening
@@ -180,6 +181,15 @@ contains
 
       is_about = allocated(self%table) .and. .not. any(abs(about - self%about) > 0.0_wp)
    end function is_about
+
+   !> Whether the law is that of a layer on a base
+   pure function is_of_layer(self)
+      class(contact_law_t), intent(in) :: self
+      logical :: is_of_layer
+
+      ! the first number is the base, 0 for a half space
+      is_of_layer = allocated(self%table) .and. self%about(1) > 0.0_wp
+   end function is_of_layer
 
    !> Take a table; `resize` sets its unit
    pure subroutine adopt(self, table, about)
@@ -319,7 +329,7 @@ contains
       end if
    end function radius
 
-   !> Force over that on a half space at the same indentation
+   !> Force over that on a half space at the same indentation, if the law is that of a layer
    pure function stiffening(self, s) result(ratio)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m], > 0

@@ -156,7 +156,9 @@ contains
       outcome%thickness_ratio = outcome%contact_radius/around%thickness*share
       if (around%on_base) then
          outcome%layer_ratio = outcome%contact_radius/around%thickness
-         outcome%layer_stiffening = impact%law%stiffening(outcome%max_indentation)
+         ! with its waves the layer has no static law
+         if (impact%law%is_of_layer()) &
+            outcome%layer_stiffening = impact%law%stiffening(outcome%max_indentation)
       end if
       ! other shapes have no radius
       if (.not. ieee_is_nan(around%radius)) then
