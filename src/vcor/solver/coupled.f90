@@ -82,9 +82,9 @@ module vcor_solver_coupled
    integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
    !> Steps of all marches of an impact, which a contact whose end is hard to find may take
    integer, parameter :: most_work = 12*most_steps
-   !> Parts of a largest value down to which a parabola is fitted: of the force, as springs that come
-   !> into contact one by one make steps in it, where a sine still differs by 1e-5 from a parabola,
-   !> and of the displacement
+   !> Parts of a largest value down to which a parabola is fitted: of the force, in which springs
+   !> that come into contact one by one make steps, and where a sine still differs by 1e-5 from a
+   !> parabola, and of the displacement
    real(wp), parameter :: noisy = 0.97_wp, smooth = 0.999_wp
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp

@@ -185,8 +185,8 @@ contains
       end associate
    end subroutine prepare
 
-   !> Subtract what earlier pressures have left in the springs, four steps at a time, as the sum over
-   !> the steps would otherwise be loaded and stored for each
+   !> Subtract what earlier pressures have left in the springs, four steps at a time, as the sum
+   !> would otherwise be loaded and stored for each
    pure subroutine subtract_past(gap, pressure, local)
       !> Approach of the bodies over the springs [m]
       real(wp), contiguous, intent(inout) :: gap(:)
@@ -249,8 +249,8 @@ contains
 
    !> Find the springs that push, and their compression. All that are on the wrong side change it at
    !> once, which takes two or three rounds from the springs of the step before. If that goes round
-   !> in circles the last of them changes alone, by Murty's rule (K. G. Murty, Opsearch 8 (1971) 188),
-   !> which always ends as the response is passive
+   !> in circles the last of them changes alone, by Murty's rule (K. G. Murty, Opsearch 8 (1971)
+   !> 188), which always ends as the response is passive
    subroutine find_pushing(self, kernel, error)
       type(balance_t), intent(inout) :: self
       type(kernel_t), intent(in) :: kernel
