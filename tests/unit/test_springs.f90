@@ -2,9 +2,11 @@
 program test_springs
    use vcor_error, only : error_t
    use vcor_impact_law, only : contact_law_t, new_contact_law
+   use vcor_impact_layer_law, only : lay, layer_t, profile_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_response, only : base_bonded
    use vcor_kinds, only : pi, wp
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, prony_t
@@ -28,6 +30,7 @@ program test_springs
 
    call suite("springs")
    call test_elastic()
+   call test_layer()
    call test_prescribed()
    call test_singular()
    call test_impacts()
@@ -77,17 +80,19 @@ contains
    end function wave
 
    !> Forces where that indentation is prescribed
-   function forces(impact, steps) result(force)
+   function forces(impact, steps, touched) result(force)
       !> The contact
       type(impact_t), intent(in) :: impact
       !> Number of steps, a multiple of 10
       integer, intent(in) :: steps
+      !> Times at which the body first touched the edge of then, in units of the step
+      real(wp), intent(out), optional :: touched(4)
       !> Forces at the parts `at` of the duration [N]
       real(wp) :: force(4)
 
       type(contact_kernel_t) :: kernel
       type(springs_t) :: springs
-      real(wp) :: s(0:steps), ds(steps), value(steps), t1
+      real(wp) :: s(0:steps), ds(steps), value(steps), t1(steps)
       integer :: n, turn
 
       s = wave([(real(n, wp)/real(steps, wp), n=0, steps)])
@@ -96,9 +101,10 @@ contains
       call kernel%prepare(impact, duration/real(steps, wp), steps)
       call springs%start(impact, kernel, turn + 1, turn, s, ds)
       do n = turn + 2, steps
-         call springs%find_force(impact, kernel, n, s(n - 1), ds, [s(n), 0.0_wp], value(n), t1)
+         call springs%find_force(impact, kernel, n, s(n - 1), ds, [s(n), 0.0_wp], value(n), t1(n))
       end do
       force = value(nint(at*real(steps, wp)))
+      if (present(touched)) touched = t1(nint(at*real(steps, wp)))
    end function forces
 
    !> An elastic contact has Hertz's force whatever happens
@@ -120,6 +126,37 @@ contains
          end do
       end do
    end subroutine test_elastic
+
+   !> On a layer an elastic contact has the layer's force, and the edge of any contact refers to the
+   !> same time as on a half space
+   subroutine test_layer()
+      real(wp), parameter :: thickness = 3.0e-3_wp, tolerance = 1.0e-9_wp
+      type(prony_t) :: material
+      type(impact_t) :: impact
+      type(error_t), allocatable :: error
+      real(wp) :: force(4), plain(4), touched(4), touched_layer(4)
+      integer :: j
+
+      call new_elastic(material, glassy, error)
+      call make_contact(material, 1.5_wp, impact)
+      call lay(impact%law, layer_t(base_bonded, poisson_ratio, 1.0_wp, thickness), profile_t(), &
+         impact%factor, error)
+      call success(error, "a layer is built")
+      force = forces(impact, 200)
+      do j = 1, size(at)
+         call check_relative(force(j), impact%kernel(0.0_wp)*impact%law%u(wave(at(j))), &
+            tolerance, "an elastic contact with a layer")
+      end do
+      call make_rubber(material, 0.0_wp)
+      call make_contact(material, 1.5_wp, impact)
+      plain = forces(impact, 200, touched)
+      call lay(impact%law, layer_t(base_bonded, poisson_ratio, 1.0_wp, thickness), profile_t(), &
+         impact%factor, error)
+      force = forces(impact, 200, touched_layer)
+      call check(all(force > 1.1_wp*plain), "a layer is stiffer")
+      call check_relative(touched_layer, touched, 1.0e-12_wp, &
+         "the time t1 does not depend on the thickness")
+   end subroutine test_layer
 
    !> Forces of a sphere on rubber, with a dashpot too, and of a cone
    subroutine test_prescribed()
