@@ -453,7 +453,7 @@ class Reader:
             and name.removesuffix("_sigma")
             not in ("loss_tangent", "complex_modulus", "phase_angle")
         ]
-        return frame[[*order, *rest]]
+        return frame[[*order, *rest]].copy()
 
     def _impacts(self, frame: pd.DataFrame) -> pd.DataFrame:
         """Times of events as times in flight, without the last one that has not ended."""
@@ -468,7 +468,7 @@ class Reader:
             # a stopwatch writes 0 for the flight that has not ended
             ended = ~(frame["bounce_time"].isna() | (frame["bounce_time"] == 0))
             last = np.flatnonzero(ended)
-            frame = frame.iloc[: last[-1] + 1 if last.size else 0]
+            frame = frame.iloc[: last[-1] + 1 if last.size else 0].copy()
         return frame
 
     def _positive(self, frame: pd.DataFrame, kind: str) -> None:
