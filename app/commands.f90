@@ -48,8 +48,9 @@ module vcor_app_commands
       //"with `--resume` continues it, also after a crash, and writes the same files as an " &
       //"uninterrupted run. A STEM.part.h5 of another case or version is refused."), &
       entry_t("", "The screen names the mechanics of an impact and, if they are not exact, shows " &
-      //"the result of the exact ones (law 'receding', pair 'series', waves 'body', or its limit " &
-      //"'hereditary' for a thin plate). It lists the measures of validity that are not good; " &
+      //"the result of the exact ones (law 'receding', pair 'series', and waves 'body' where the " &
+      //"case has waves, or a thickness and a free plate). It lists the measures of validity " &
+      //"that are not good; " &
       //"for a sweep, how many points that concerns, by which measure, and where. With " &
       //"`--print`, one line on stderr lists them. Numbers that no material has (a density of " &
       //"7.8 kg/m3) cause a warning."), &
@@ -165,7 +166,8 @@ module vcor_app_commands
       //"tolerance."), &
       entry_t("", "With cases: solves each case by internal variables (ive), at its accuracy and " &
       //"at one hundredth of it, and by product integration (direct) with 1000, 2000 and 4000 " &
-      //"steps per contact, extrapolated. If the case asks for another scheme, that solution is " &
+      //"steps per contact, extrapolated; with waves 'body' by the coupled contact, at its " &
+      //"accuracy and at a tenth of it. If the case asks for another scheme, that solution is " &
       //"shown too. A second table has the numbers of every plate model, both contact laws and, " &
       //"if it matters, both pairs. No files are written. The columns are:"), &
       entry_t("states", "error of cor that the solution itself estimates"), &

@@ -7,7 +7,7 @@ module vcor_app_job
    use vcor_case_catalogue, only : catalogue, key_t, real_key
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
-   use vcor_case_unread, only : refuse_unread
+   use vcor_case_unread, only : method_of, refuse_unread
    use vcor_case_values, only : range_message
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
@@ -18,7 +18,6 @@ module vcor_app_job
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable
    use vcor_words, only : contains_word, suggestion
-   use vcor_solver, only : method_for
    use vcor_sweep_part, only : part_t
    use vcor_sweep_quantity, only : quantity_names
    use vcor_sweep_points, only : new_sweep, solve_point, sweep_t, worker_t
@@ -82,8 +81,7 @@ contains
             if (request%command == 'verify' .and. job%sweep%is_grid()) call job%case%refuse( &
                'sweep', 'parameter', 1, 'verify takes single impacts, found a &sweep group', error)
             if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
-            job%method = method_for(job%sweep%problem%settings%method, &
-               job%sweep%problem%settings%scheme)
+            job%method = method_of(job%case)
             if (.not. allocated(error)) call name_files(request, job%case, job%sweep%grid, &
                size(jobs) == 1, job%files, job%part, error)
          end associate

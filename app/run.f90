@@ -114,7 +114,7 @@ contains
                //short(course%kernel_error))
             method = job%method
             ! `auto` uses direct if ive fails
-            if (course%stages == 0) method = 'direct'
+            if (method == 'ive' .and. course%stages == 0) method = 'direct'
             call write_stdout(report(job%case%source, identity%title, method, outcome, &
                exact%outcome, course%state(1, course%last), lines &
                //remarks_on(job, outcome)//files//as_line(replacement_note(previous))), trouble)
@@ -144,6 +144,8 @@ contains
       if (len(inexact(outcome)) > 0) call add(inexact(outcome))
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
+      if (outcome%is_coupled()) call add('contact and waves are solved as one: cor is ' &
+         //'cor_sphere, and hysteresis_energy, wave_energy, deflection_ratio and inelasticity are nan')
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it, and it will strike again')
       if (uncovered(job, outcome) /= '') call add(uncovered(job, outcome))

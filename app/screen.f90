@@ -21,7 +21,8 @@ module vcor_app_screen
    character(len=*), parameter :: shown(*) = [character(len=20) :: 'cor', 'cor_sphere', &
       'resilience', 'rebound_height', 'contact_time', 'max_indentation', 'max_force', &
       'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio', &
-      'layer_stiffening', 'mean_pressure', 'min_frequency', 'inelasticity', 'loss_tangent', 'peak_loss_tangent']
+      'layer_stiffening', 'mean_pressure', 'min_frequency', 'inelasticity', 'loss_tangent', &
+      'peak_loss_tangent']
 
 contains
 
@@ -54,6 +55,7 @@ contains
                text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
                   shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &
                   remark(outcome, shown(i)))
+               if (shown(i) == 'cor' .and. exact%is_coupled()) cycle
                if (i <= 2 .and. .not. ieee_is_nan(exact%cor)) text = text &
                   //line('    with exact mechanics', 50, quantity%symbol, &
                   quantity_value(exact, shown(i)), '', remark(exact, shown(i)))
@@ -151,19 +153,25 @@ contains
 
       character(len=:), allocatable :: doubt
 
-      doubt = ''
-      if (visible(outcome%wave_energy, outcome%initial_energy) < 0.0_wp) &
-         doubt = '; only W_h + W_wave is a loss'
       text = line('  energy before the impact', 50, 'KE_0', outcome%initial_energy, 'J', '')
       if (abs(outcome%weight_work) > 0.0_wp) text = text//line('    gained by the weight', 50, &
          'm g z', outcome%weight_work, 'J', share(outcome%weight_work))
-      text = text//line('    lost in the contact (hysteresis)', 50, 'W_h', &
-         visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
-         share(outcome%hysteresis_energy)) &
-         //line('    radiated into the plate', 50, 'W_wave', &
-         visible(outcome%wave_energy, outcome%initial_energy), 'J', &
-         share(outcome%wave_energy)//doubt) &
-         //line('    left to the sphere', 50, 'KE_1', outcome%final_energy, 'J', &
+      if (outcome%is_coupled()) then
+         ! contact and waves are one
+         text = text//line('    lost in contact and plate together', 50, 'W', &
+            visible(outcome%energy_loss, outcome%initial_energy), 'J', share(outcome%energy_loss))
+      else
+         doubt = ''
+         if (visible(outcome%wave_energy, outcome%initial_energy) < 0.0_wp) &
+            doubt = '; only W_h + W_wave is a loss'
+         text = text//line('    lost in the contact (hysteresis)', 50, 'W_h', &
+            visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
+            share(outcome%hysteresis_energy)) &
+            //line('    radiated into the plate', 50, 'W_wave', &
+            visible(outcome%wave_energy, outcome%initial_energy), 'J', &
+            share(outcome%wave_energy)//doubt)
+      end if
+      text = text//line('    left to the sphere', 50, 'KE_1', outcome%final_energy, 'J', &
          share(outcome%final_energy)) &
          //line('    missing from the budget', 50, 'dW', outcome%energy_imbalance, 'J', '')
 

@@ -105,11 +105,10 @@ contains
       logical :: is_valid
 
       call case%get('plate', 'waves', waves)
+      is_shown = .false.
+      if (waves == 'body' .and. outcome%is_coupled()) return
       exact = model_t(waves, 'receding', 'series')
-      ! for a thin plate the limit is sufficient, and takes a tenth of the time
-      if (waves /= 'none' .and. waves /= 'body') exact%waves = trim(merge('body      ', &
-         'hereditary', level_of(findloc(thresholds%measure, 'plate_wave_number', dim=1), &
-         outcome%plate_wave_number) > level_good))
+      if (waves /= 'none' .or. case%given('plate', 'half_thickness')) exact%waves = 'body'
       call solve_model(case, exact, is_valid)
       is_shown = allocated(exact%failure)
       if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
@@ -186,9 +185,6 @@ contains
                   //" of the energy and is not computed; compare waves = 'body'"
             case ('energy_loss')
                words = gain()
-            case ('footprint_effect')
-               words = 'cor is that of a face whose waves start from a disc of some size; ' &
-                  //'cor_sphere feels less of it'
             case default
                words = 'a thick plate takes up '//percent(value) &
                   //" of the energy more than is computed; compare waves = 'body'"

@@ -96,7 +96,7 @@ contains
          //'method         expected            found deviation tolerance'//nl
       do i = 1, size(verdicts)
          associate (row => verdicts(i))
-            text = text//'  '//padded(row%name, 32)//row%method//significant(row%expected, 10, 17) &
+            text = text//'  '//padded(row%name, 32)//row%method//significant(row%expected, 10, 16) &
                //significant(row%found, 10, 17)//column(row%deviation, 10) &
                //column(row%tolerance, 10)//'  '//merge('pass', 'FAIL', row%passed)//nl
             if (.not. row%passed) text = text//'    reason of the tolerance: '//trim(row%reason)//nl
@@ -115,7 +115,8 @@ contains
       if (.not. comparison%two_methods) text = text//'  note: method ive has no result that is ' &
          //'accurate enough, so direct stands alone'//nl
       if (comparison%separated) then
-         text = text//nl//values_text(comparison)//nl//differences_text(comparison)
+         text = text//nl//values_text(comparison)
+         if (comparison%has_direct) text = text//nl//differences_text(comparison)
       else if (.not. allocated(comparison%objection)) then
          text = text//'  all end in the same way, '//status_name( &
             comparison%attempts(attempt_first)%outcome%status) &
@@ -149,9 +150,10 @@ contains
          //right('residual_indentation [m]', 26)//nl
       do i = 1, size(models)
          associate (this => models(i))
-            if (this%pair /= models(max(1, i - 1))%pair) &
+            if (this%pair /= models(max(1, i - 1))%pair .and. this%waves /= 'body') &
                text = text//"  the same with pair = '"//trim(this%pair)//"'"//nl
-            text = text//merge('* ', '  ', this%given)//this%waves//'  '//this%law
+            text = text//merge('* ', '  ', this%given)//merge('half_space', this%waves, &
+               this%is_half_space)//'  '//this%law
             if (allocated(this%failure)) then
                text = text//right('refused', 16)//nl
             else if (this%outcome%status /= contact_separated) then
@@ -274,15 +276,18 @@ contains
 
       name = 'quantity'
       text = '  '//name//right(trim(comparison%attempts(attempt_first)%label), 19)
-      if (comparison%two_methods) text = text//right('ive, refined', 19)
-      text = text//right('direct, dt -> 0', 19)//'   order  digits'//nl
+      if (comparison%two_methods) text = text//right( &
+         trim(comparison%attempts(attempt_first)%label)//', refined', 19)
+      if (comparison%has_direct) text = text//right('direct, dt -> 0', 19)//'   order'
+      text = text//'  digits'//nl
       do i = 1, size(comparison%compared)
          associate (this => comparison%compared(i))
             name = this%name
             text = text//'  '//name//value_text(this%value(attempt_first))
             if (comparison%two_methods) text = text//value_text(this%value(attempt_refined))
-            text = text//value_text(this%direct%limit)//order_text(this%direct%order) &
-               //right(integer_text(this%digits), 8)//nl
+            if (comparison%has_direct) text = text//value_text(this%direct%limit) &
+               //order_text(this%direct%order)
+            text = text//right(integer_text(this%digits), 8)//nl
          end associate
       end do
 

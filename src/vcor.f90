@@ -11,7 +11,9 @@ module vcor
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_body, waves_constant, &
+   use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, face_t, &
+      new_face
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, &
       waves_frozen, waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
@@ -46,7 +48,8 @@ module vcor
    ! an impact
    public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
-   public :: waves_hereditary, waves_body
+   public :: waves_hereditary
+   public :: face_t, new_face, base_half_space, base_free, base_bonded, base_sliding
    public :: impact_t, new_impact, contact_law_t, new_contact_law
    ! its solution
    public :: solve_impact, outcome_t, solver_settings_t, trajectory_t, solver_t, new_solver

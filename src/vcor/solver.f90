@@ -6,6 +6,7 @@ module vcor_solver
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
+   use vcor_solver_coupled, only : coupled_t, new_coupled
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
@@ -17,12 +18,14 @@ module vcor_solver
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy
 
-   !> The method `auto`: internal variables, and product integration if they fail. They fail if no
-   !> sum of exponentials represents the kernel: for a table whose data begin long after the end of
-   !> the contact, for some pairs, and for exponents near a limit; and if a receding contact grows
-   !> again
+   !> The method `auto`: the coupled contact for waves in a plate of any thickness, otherwise
+   !> internal variables, and product integration if they fail. They fail if no sum of exponentials
+   !> represents the kernel: for a table whose data begin long after the end of the contact, for
+   !> some pairs, and for exponents near a limit; and if a receding contact grows again
    type, extends(solver_t) :: auto_t
-      !> First method
+      !> Method for waves in a plate of any thickness
+      type(coupled_t), allocatable :: coupled
+      !> First method for all others
       type(ive_t) :: ive
       !> Method if the first has no result, or one far from the requested accuracy
       type(product_t) :: product
@@ -60,7 +63,11 @@ contains
       if (allocated(error)) return
       two_terms = abs(settings%second_coefficient) > 0.0_wp
       is_product = settings%scheme == 'product'
-      if (settings%method == 'ive' .and. .not. is_product) then
+      if (impact%face%has_waves .and. any(settings%method == ['ive   ', 'direct'])) then
+         call refuse("waves = 'body' are solved by method = 'coupled' only", 'method waves')
+      else if (settings%method == 'coupled' .or. impact%face%has_waves) then
+         call check_coupled(settings, impact, error)
+      else if (settings%method == 'ive' .and. .not. is_product) then
          call refuse("adams_bashforth is a scheme of method = 'direct'", 'scheme method')
       else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
          call refuse('the second term of the Volterra series has no meaning with a viscosity, ' &
@@ -80,9 +87,6 @@ contains
       else if (impact%gravity > 0.0_wp .and. .not. is_product) then
          call refuse("adams_bashforth marches the paper's wave equation, without a weight; use " &
             //"method = 'ive', or 'direct' with scheme = 'product'", 'gravity scheme')
-      else if (impact%plate%layered() .and. two_terms) then
-         call refuse("waves = 'body' is linear theory, a second term of the Volterra series is " &
-            //'not', 'waves volterra_order')
       else if (impact%plate%hereditary() .and. .not. is_product) then
          call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
             //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &
@@ -101,6 +105,31 @@ contains
          call raise(error, error_input, message, about)
       end subroutine refuse
    end subroutine check_settings
+
+   !> Check that the coupled contact can be solved with the given settings
+   subroutine check_coupled(settings, impact, error)
+      type(solver_settings_t), intent(in) :: settings
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_input`
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. impact%face%is_built()) then
+         call raise(error, error_input, "method = 'coupled' needs the face of the impact: " &
+            //'new_face builds it', 'method')
+      else if (impact%plate%moves()) then
+         call raise(error, error_input, "method = 'coupled' solves waves = 'body' or 'none', not " &
+            //'those of a thin plate', 'method waves')
+      else if (abs(settings%second_coefficient) > 0.0_wp) then
+         call raise(error, error_input, "method = 'coupled' is linear theory, a second term of " &
+            //'the Volterra series is not', 'volterra_order method waves')
+      else if (settings%scheme /= 'product') then
+         call raise(error, error_input, "adams_bashforth is a scheme of method = 'direct'", &
+            'scheme method waves')
+      else if (settings%ghost) then
+         call raise(error, error_input, 'nothing is left of a coupled contact at separation: ' &
+            //'going on has no meaning', 'continue_after_separation method waves')
+      end if
+   end subroutine check_coupled
 
    !> Check the numbers among the settings
    subroutine check_numbers(settings, error)
@@ -174,6 +203,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(auto_t), allocatable :: auto
+      type(coupled_t), allocatable :: coupled
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
       type(adams_bashforth_t), allocatable :: adams_bashforth
@@ -185,6 +215,10 @@ contains
          allocate (ive)
          call new_ive(ive, settings, error)
          if (.not. allocated(error)) call move_alloc(ive, solver)
+      else if (settings%method == 'coupled') then
+         allocate (coupled)
+         call new_coupled(coupled, settings)
+         call move_alloc(coupled, solver)
       else if (settings%method == 'auto' .and. settings%scheme == 'product') then
          allocate (auto)
          call new_ive(auto%ive, settings, error)
@@ -194,10 +228,12 @@ contains
          fallback = settings
          fallback%time_step = 0.0_wp
          call new_product(auto%product, fallback)
+         allocate (auto%coupled)
+         call new_coupled(auto%coupled, settings)
          call move_alloc(auto, solver)
       else if (settings%method /= 'direct' .and. settings%method /= 'auto') then
          call raise(error, error_input, "unknown method '"//trim(settings%method) &
-            //"'; known: auto, ive, direct")
+            //"'; known: auto, ive, direct, coupled")
       else if (settings%scheme == 'product') then
          allocate (product)
          call new_product(product, settings)
@@ -221,9 +257,11 @@ contains
 
       type(error_t), allocatable :: failure
 
+      if (impact%face%has_waves) then
+         call self%coupled%solve(impact, trajectory, error)
+         return
+      end if
       call self%ive%solve(impact, trajectory, error)
-      ! for a layer product integration takes seconds, and its error estimate says less
-      if (impact%plate%layered()) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)

@@ -98,28 +98,6 @@ module vcor_tuning
    !> Window of a sum over the expected contact time, and its growth if the contact lasts longer
    real(wp), parameter :: window_margin = 2.0_wp
    real(wp), parameter :: window_growth = 20.0_wp
-   !> Growth for a layer, whose sum is more accurate in a shorter window
-   real(wp), parameter :: layer_growth = 2.0_wp
-   !> Time of the largest force over the window below which there is no result: the sum of a layer
-   !> has no rates for so short times
-   real(wp), parameter :: layer_start = 1.0e-3_wp
-   !> Accuracy of `cor` on a layer without a request, or if a higher one is requested: the velocity
-   !> of its face at the end is known less well than that of the sphere
-   real(wp), parameter :: layer_reach = 3.0e-4_wp
-   !> Highest accuracy used internally on a layer: its oscillations need not be resolved
-   real(wp), parameter :: layer_accuracy = 1.0e-7_wp
-   !> Error of the impulse over its misfit on a layer, measured against sums with twice the rates:
-   !> about 3 pi^2, as the force answers a change of the motion
-   real(wp), parameter :: error_of_motion = 30.0_wp
-   !> Error of the velocity of a layer's face at the end over its misfit, measured between sums with
-   !> other rates; largest where the force ends as s^1.5
-   real(wp), parameter :: error_of_layer = 1.0e3_wp
-
-   !> Least errors of the coefficients of restitution of the sphere and of the contact for a flat
-   !> punch, over the velocity of the face by its waves: its force begins with a kink, whose echoes
-   !> the sum blurs. Measured against method direct on 14 punches
-   real(wp), parameter :: error_of_blunt = 3.0e-6_wp
-   real(wp), parameter :: end_of_blunt = 1.0e-2_wp
 
    ! Newton's method
 
@@ -301,14 +279,11 @@ module vcor_tuning
    !> a fast glassy modulus shortens them
    integer, parameter :: first_steps = 64
    real(wp), parameter :: least_part = 32.0_wp
-   !> Maximum number of steps: more take seconds, for the sums or for the compliance of a layer
+   !> Maximum number of steps: more take seconds for the sums
    integer, parameter :: most_for_all = 60000
-   integer, parameter :: most_for_layers = 8000
    !> Multiplications of the springs of a contact that grows again after which a run is given up:
    !> they take seconds
    real(wp), parameter :: most_work = 3.0e9_wp
-   !> Number of steps beyond which a run is not refined for the sake of `cor` of a layer alone
-   integer, parameter :: enough_steps = 1000
    !> Smallest error of `cor` over that of `cor_sphere`
    real(wp), parameter :: cancelled = 0.1_wp
    !> Error allowed for the largest force, over the accuracy
@@ -324,8 +299,5 @@ module vcor_tuning
    !> Error of the rule of a step for alpha' of a frozen plate, over the rise of alpha, above which
    !> the step does not resolve it
    real(wp), parameter :: unresolved_rise = 0.1_wp
-   !> Share of the changes of a layer's weights after the last one that is aliased into the first
-   !> ones; the square root of its inverse amplifies errors of the compliance in the last ones
-   real(wp), parameter :: aliased = 1.0e-6_wp
 
 end module vcor_tuning

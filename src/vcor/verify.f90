@@ -2,20 +2,20 @@
 !> independent one. The modules under verify/ explain each law
 module vcor_verify
    use vcor_error, only : error_internal, error_t, raise
-   use vcor_verify_body, only : thick_body, thin_body
    use vcor_verify_closed_forms, only : hertz, limits, mittag_leffler, power_law, scaling, &
       weak_maxwell, zener
    use vcor_verify_golden, only : beyond, golden, printed
    use vcor_verify_kelvin_voigt, only : exact, pade, series, zener_relation
    use vcor_verify_layer, only : layer
    use vcor_verify_law, only : evaluate_law, law_t, verdict_t
+   use vcor_verify_waves, only : waves_of_any_thickness
    implicit none
    private
 
    public :: law_count, law_t, verdict_t, evaluate_law, build_law
 
    !> Number of laws
-   integer, parameter :: law_count = 17
+   integer, parameter :: law_count = 16
 
 contains
 
@@ -54,10 +54,8 @@ contains
       case (13)
          call beyond(law)
       case (14)
-         call thick_body(law)
+         call waves_of_any_thickness(law)
       case (15)
-         call thin_body(law)
-      case (16)
          call layer(law)
       case (law_count)
          call printed(law)

@@ -13,6 +13,18 @@ module vcor_words
    !> Shortest name that counts as the beginning of a known one [bytes]
    integer, parameter :: shortest_beginning = 3
 
+   !> A name of keys, columns or options that earlier versions had
+   type :: gone_t
+      character(len=20) :: name
+      !> What to write instead
+      character(len=72) :: advice
+   end type gone_t
+
+   !> The names that are gone
+   type(gone_t), parameter :: gone(*) = [ &
+      gone_t('footprint', "waves = 'body' solves the contact itself: remove it"), &
+      gone_t('footprint_effect', "waves = 'body' solves the contact itself: remove it")]
+
 contains
 
    !> The words of a list as an array
@@ -75,7 +87,8 @@ contains
       end do
    end function join_words
 
-   !> Suggestion for an unknown name: the nearest known one, or as many as fit in a line
+   !> Suggestion for an unknown name: what took the place of one that is gone, the nearest known
+   !> one, or as many as fit in a line
    pure function suggestion(name, known) result(text)
       !> The unknown name
       character(len=*), intent(in) :: name
@@ -87,6 +100,11 @@ contains
       integer, parameter :: line = 300
       integer :: last
 
+      last = findloc(gone%name == lower(name), .true., dim=1)
+      if (last > 0) then
+         text = trim(gone(last)%advice)
+         return
+      end if
       text = nearest_name(name, known)
       if (len(text) > 0) then
          text = "did you mean '"//text//"'?"

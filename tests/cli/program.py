@@ -50,7 +50,6 @@ NAMES = [
     "mean_pressure",
     "half_space_loss",
     "bending_loss",
-    "footprint_effect",
     "peak_loss_tangent",
     "validity",
     "validity_cause",

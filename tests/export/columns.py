@@ -34,7 +34,6 @@ SUMMARY = {
     "mean_pressure": "Pa",
     "half_space_loss": "1",
     "bending_loss": "1",
-    "footprint_effect": "1",
     "peak_loss_tangent": "1",
     "validity": "",
     "validity_cause": "",

@@ -29,7 +29,6 @@ Plate (`waves`), A = sqrt(3 rho_b)/(16 rho_b h^2), alpha(t) = A/sqrt(E'_b(t)):
     frozen       U' = int_0^t alpha F' dt = alpha F - int_0^t alpha' F dt
     hereditary   U' has the transform A F/sqrt(Q_b), so U' = g F + int_0^t psi(t-x) F(x) dx with
                  g = A/sqrt(Q_b(inf)) and psi the inverse transform of A/sqrt(Q_b) - g
-    body         U = g F + int_0^t psi(t-x) F(x) dx by full elastodynamics, see body_waves.py
 
 Method.  Collocation in y = sqrt(t), element by element: all fields are polynomials of degree n in
 y at Chebyshev-Lobatto nodes.  Elements grow geometrically from 1e-4 of the root of the contact
@@ -52,8 +51,6 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from scipy.optimize import brentq
 from scipy.special import erfcx
-
-from body_waves import Memory, TooLate
 
 TINY = 1e-290
 
@@ -312,13 +309,12 @@ class Impact:
         self.kinks = sorted(set(a.kinks + b.kinks))
         h, rho = plate.get("half_thickness", 1.0), b.density or 1.0
         self.plate_factor = math.sqrt(3 * rho) / (16 * rho * h ** 2)
-        if self.waves in ("none", "body") or b.model == "rigid":
+        if self.waves == "none" or b.model == "rigid":
             self.plate_factor = 0.0
         self.k = self.kernel()
         self.g, self.psi, self.psi_singular = 0.0, None, 0.0
         if self.waves == "hereditary" and self.plate_factor:
             self.memory()
-        self.body, self.lags = self.waves == "body", []
 
     @staticmethod
     def shape(sphere, surface_radius):
@@ -403,17 +399,6 @@ class Impact:
         self.psi_singular = {"cerf": 0.5, "mittag_leffler": 1 - b.keys.get("exponent", 1.0)}.get(
             b.model, 0.0)
         self.psi = Cached(lambda t: invert(transform, t), self.psi_singular, 1e9)
-
-    def body_memory(self, contacts=1.3, **lines):
-        """The memory of a plate with `body` waves for so many contact times."""
-        end = contacts * self.time_scale()
-        b, plate = self.b, self.case["plate"]
-        self.body = Memory(b, 2 * plate.get("half_thickness", math.inf), plate["footprint"], end,
-                           lambda transform, until: Cached(
-                               lambda t: invert(transform, t), 0.0, until), **lines)
-        self.body_singular = b.singular_exponent and 1 - b.singular_exponent or {
-            "cerf": 0.5, "mittag_leffler": 1 - b.keys.get("exponent", 1.0)}.get(b.model, 0.0)
-        self.lags = self.body.edges
 
     def alpha(self, t):
         """alpha(t) and alpha'(t)."""
@@ -550,13 +535,13 @@ class Contact:
 
     # -- history ---------------------------------------------------------------------------
 
-    def edges(self, y, gap, distances, floor, lags=()):
-        """Distances from y, from gap to y, at which panels end; `lags` as well, times before y^2."""
+    def edges(self, y, gap, distances, floor):
+        """Distances from y, from gap to y, at which panels end."""
         edge = [y]
         while edge[-1] > max(floor, gap):
             edge.append(edge[-1] / 2)
         edge = np.array(edge)
-        kinks = np.array([x for x in (*self.p.kinks, *lags) if x < y * y])
+        kinks = np.array([x for x in self.p.kinks if x < y * y])
         kinks = kinks / (y + np.sqrt(y * y - kinks))
         edge = np.concatenate([edge[edge > gap], distances[distances > gap], kinks])
         edge = np.sort(edge[edge > gap])
@@ -577,7 +562,7 @@ class Contact:
             wd = np.vstack([edge[0] * power * g ** (power - 1) * w, wd])
         return d, wd
 
-    def rows(self, y0, h, kernel, singular, fields, slope, lags=()):
+    def rows(self, y0, h, kernel, singular, fields, slope):
         """Rows of int kernel(t-x) f(x) dx: own element as a matrix for values at its nodes (and,
         with `slope`, for int kernel f' dx), past elements as a number per field ("du": int kernel
         u' dx, "df" alike) and node."""
@@ -594,7 +579,7 @@ class Contact:
             to_left = y[i] - left
             to_left[-1] = own
             floor = min(y[i] * 2.0 ** -mesh.panels, own / 2 if i else self.size[-1] / 2)
-            edge = self.edges(y[i], 0.0, to_left, floor, lags)
+            edge = self.edges(y[i], 0.0, to_left, floor)
             d, w = self.rule(edge, singular)
             k = np.where(w > 0, kernel((d * (2 * y[i] - d)).ravel()).reshape(d.shape), 0.0)
             middle = d.mean(axis=1)
@@ -652,13 +637,7 @@ class Contact:
         alpha, rate = p.alpha(t)
         zero, one = np.zeros((n + 1, n + 1)), np.eye(n + 1)
         memory = zero, np.zeros(n + 1), np.zeros(n + 1)
-        if p.body:
-            own, of_force, past = self.rows(
-                y0, h, p.body, p.body_singular, ("force", "df"), True, p.lags)
-            memory = p.body.instant * one + own, past["force"], past["force"]
-            of_force = of_force + p.body.instant * self.mesh.rate(y, h)
-            known = past["df"]
-        elif p.plate_factor == 0.0:
+        if p.plate_factor == 0.0:
             of_force, known = zero, np.zeros(n + 1)
         elif p.waves == "hereditary":
             of_force, known = p.g * one, np.zeros(n + 1)
@@ -691,10 +670,7 @@ class Contact:
         of_force, known_rate, alpha, rate, memory = self.plate_rows(y0, h, y, integral)
         weight = integral @ a_full / p.m
         known = p.free(t)[0] - at["j"] / p.m - integral @ past["u"] / p.m
-        if p.body:
-            weight = weight + memory[0] @ d_full
-            known = known - memory[0] @ past["du"] - memory[1]
-        elif p.plate_factor == 0.0:
+        if p.plate_factor == 0.0:
             pass
         elif p.waves == "frozen":
             move = integral @ of_force
@@ -731,9 +707,8 @@ class Contact:
         if p.waves in ("relaxing", "constant"):
             wave = alpha * force + rate * impulse
         wave[t == 0] = of_force[0, 0] * force[0]
-        quiet = wave - p.body.instant * (mesh.rate(y, h) @ force) if p.body else wave
         return dict(y0=y0, h=h, s=s, u=u, impulse=impulse, force=force, wave=wave,
-                    v=p.free(t)[1] - impulse / p.m - wave, quiet=quiet, integral=integral,
+                    v=p.free(t)[1] - impulse / p.m - wave, integral=integral,
                     rate=rate, du=mesh.rate_of @ u * (2 / h), df=mesh.rate_of @ force * (2 / h))
 
     def receding(self, y0, h):
@@ -774,8 +749,7 @@ class Contact:
             new = np.minimum(new, y_max - (y_max - back) / 4)
             clipped = np.any(np.abs(new - back - change)[1:] > 1e-3 * np.abs(back)[1:])
             size = np.max(np.abs(dw * root)) / self.fmax
-            small, floor = (1e-13, 1e-9) if p.body else (2e-15, 1e-12)
-            if not clipped and (size < small or (it > 6 and size > 0.3 * best and size < floor)):
+            if not clipped and (size < 2e-15 or (it > 6 and size > 0.3 * best and size < 1e-12)):
                 break
             if not clipped:
                 best = min(best, size)
@@ -785,16 +759,15 @@ class Contact:
         impulse = at["impulse"] + integral @ force
         v = free - brake @ force
         wave = of_force @ force + known_rate
-        quiet = wave - p.body.instant * (mesh.rate(y, h) @ force) if p.body else wave
         s = at["s"] + integral @ v
         return dict(y0=y0, h=h, s=s, u=p.u(s), impulse=impulse, force=force, wave=wave,
-                    quiet=quiet, v=v, integral=integral, rate=rate, du=0.0 * s,
+                    v=v, integral=integral, rate=rate, du=0.0 * s,
                     df=mesh.rate_of @ force * (2 / h), back=back, condition=own @ v + past["v"])
 
     def accept(self, e, upto=1.0):
         """Keep an element up to the reduced coordinate `upto`."""
         p, at, mesh = self.p, self.at, self.mesh
-        c = {f: mesh.to_coef @ e[f] for f in (*self.FIELDS, "wave", "quiet")}
+        c = {f: mesh.to_coef @ e[f] for f in (*self.FIELDS, "wave")}
         pz = -1 + (upto + 1) * mesh.g01
         pw = (upto + 1) * mesh.w01 * (e["h"] / 2) * 2 * (e["y0"] + e["h"] * (1 + pz) / 2)
         force, v, wave = (cheb.chebval(pz, c[f]) for f in ("force", "v", "wave"))
@@ -816,7 +789,7 @@ class Contact:
         since = e["h"] * (2 * e["y0"] + e["h"])
         frozen = e["integral"] @ (e["rate"] * e["force"])
         self.at = dict(s=end["s"], u=end["u"], impulse=end["impulse"], force=end["force"],
-                       v=end["v"], wave=end["wave"], quiet=end["quiet"], j=at["j"] + last @ e["impulse"],
+                       v=end["v"], wave=end["wave"], j=at["j"] + last @ e["impulse"],
                        plate=at["plate"] + last @ e["wave"], frozen=at["frozen"] + frozen[-1])
         return c, since
 
@@ -882,7 +855,7 @@ class Contact:
                 if acc < 0 and disc > 0:
                     rest = min(rest, 2 * s / (-v + math.sqrt(disc)))
                 if rest < 1e-9 * y ** 2:      # s and F vanish together: an elastic end
-                    self.at.update(s=0.0, wave=self.at["quiet"])
+                    self.at.update(s=0.0)
                     return self.outcome(y ** 2 + rest)
                 h = min(h, math.sqrt(y ** 2 + 0.5 * rest) - y)
         raise NoSeparation("no separation")
@@ -892,18 +865,11 @@ class Contact:
         mesh = self.mesh
         self.y_max, self.approach = self.y, len(self.left)
         self.t1, self.t1_rate, self.back = self.y ** 2, -1.0, 0.0
-        h = (1e-2 if self.p.body else 1e-6) * self.y
+        h = 1e-6 * self.y
         for _ in range(20000):
             if self.y > math.sqrt(limit) * self.y_scale:
                 raise NoSeparation("no separation")
-            try:
-                e = self.smooth(self.receding, self.y, self.to_kink(self.y, h))
-            except NoSeparation:
-                # F' of the plate's motion has fewer digits than the smallest elements need
-                if not self.p.body or h > 0.1 * self.y:
-                    raise
-                h *= 2
-                continue
+            e = self.smooth(self.receding, self.y, self.to_kink(self.y, h))
             self.accept(e)
             y = self.y
             y1 = self.y_max - e["back"]
@@ -918,7 +884,6 @@ class Contact:
             rest = -e["condition"][-1] / falls if falls < 0 else math.inf
             if rest < 1e-10 * y ** 2:
                 self.at["s"] += self.at["v"] * rest
-                self.at["wave"] = self.at["quiet"]
                 return self.outcome(y ** 2 + rest)
             # y - y_max doubles at most, the rest is halved at most
             h = min(2 * e["h"], y - self.y_max, (mesh.ratio - 1) * y, self.step_max)
@@ -967,26 +932,7 @@ def solve(case):
 def both(case):
     """Outcomes on two meshes."""
     impact = Impact(case)
-    if impact.body:
-        return tuple(solve_body(impact, *way) for way in BODY)
     return tuple(Contact(impact, mesh).run() for mesh in meshes())
-
-
-# Mesh and lines of the two solutions with `body` waves: echoes are not smooth
-BODY = ((Mesh(18, 11, 1.5, 28, 4, 1e-11), dict()),
-        (Mesh(14, 8, 1.6, 25, 4, 1e-10), dict(band=200.0, least=90.0, damping=28.0, fine=0.8)))
-
-
-def solve_body(impact, mesh, lines):
-    """Outcome with `body` waves, the memory made longer until the contact ends within it."""
-    contacts = 1.5
-    while contacts < 6:
-        impact.body_memory(contacts, **lines)
-        try:
-            return Contact(impact, mesh).run()
-        except TooLate:
-            contacts *= 1.6
-    raise NoSeparation("no separation within six contact times")
 
 
 def difference(x, y):

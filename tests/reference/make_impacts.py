@@ -1,5 +1,5 @@
 """Reference impacts of every plate, contact law, pair and material: practical.txt, random.txt,
-designed.txt, shapes.txt and found.txt, which tests/unit/test_impacts.f90 reads, and body.txt.
+designed.txt, shapes.txt and found.txt, which tests/unit/test_impacts.f90 reads.
 
 A set is a text file of impacts, each with two remarks and the case as vcor reads it:
 
@@ -15,16 +15,14 @@ designed.txt    every plate with every law and pair, every model, tables: --desi
 shapes.txt      cones, punches and profiles, and impacts with gravity: --shapes
 found.txt       impacts of other random sets (--random COUNT --seed SEED) that a version of vcor
                 missed, or whose error it stated too small
-body.txt        plates with waves by full elastodynamics, with the measured accuracy: --body COUNT
 
 The solver is impact_solver.py.
 
 Usage:  make_impacts.py [--check SET.txt] [--random COUNT [--seed SEED]] [--designed] [--shapes]
-                        [--body COUNT] [--output DIR]
+                        [--output DIR]
 """
 
 import argparse
-import concurrent.futures
 import math
 import os
 import pathlib
@@ -404,114 +402,6 @@ def designed_set(path, title, cases, only=""):
         path.write_text(out, encoding="utf-8")
 
 
-# ------------------------------------------------------------------- waves by elastodynamics
-
-GLASS = dict(name="plate", density=2500.0, poisson_ratio=0.22, model="elastic", modulus=70e9)
-GLASS_BEAD = dict(name="ball", density=2500.0, poisson_ratio=0.22, model="elastic", modulus=70e9)
-PMMA = dict(name="plate", density=1190.0, poisson_ratio=0.35, model="prony",
-            equilibrium_modulus=2.6e9, moduli=[5e8, 9e8], rates=[3e4, 4e5])
-RUBBER = dict(SLS, poisson_ratio=0.48)
-
-
-def body_impact(materials, law, thickness, velocity, radius, pair="eq1"):
-    """A sphere on a plate with `body` waves.  thickness: in contact radii, 0 for a half space, or
-    as text in m."""
-    names = [m["name"] for m in materials]
-    case = dict(velocity=velocity, sphere=dict(radius=radius, material=names[0]),
-                plate=dict(material=names[-1], waves="none"), contact=dict(law=law, pair=pair),
-                materials=list(materials))
-    one = impact_solver.Impact(case)
-    contact = math.sqrt((0.75 * one.c) ** 2 * 1.0936 * velocity * one.time_scale() / 3.218)
-    plate = dict(material=names[-1], waves="body", footprint=float(f"{1.6 * contact:.6g}"))
-    if isinstance(thickness, str):
-        plate["half_thickness"] = float(thickness) / 2
-    elif thickness:
-        plate["half_thickness"] = float(f"{thickness * contact / 2:.6g}")
-    case["plate"] = plate
-    return case
-
-
-def bodies():
-    """Remark and case of each impact of body.txt."""
-    for thickness in ("0.004", 0, 10, 30, 100):
-        yield "steel on glass", body_impact((RIGID, GLASS), "boltzmann", thickness, 1.0, 0.002)
-    for thickness in (0.3, 1, 3):
-        yield "soft ball on thin glass", body_impact((SOFT, GLASS), "boltzmann", thickness, 10.0,
-                                                     0.01)
-    yield "steel on glass", body_impact((STEEL, GLASS), "receding", "0.016", 1.0, 0.002)
-    yield "glass bead on PMMA", body_impact((GLASS_BEAD, PMMA), "boltzmann", "0.01", 3.1, 0.001)
-    yield "glass bead on PMMA", body_impact((GLASS_BEAD, PMMA), "receding", "0.003", 3.1, 0.001,
-                                            "series")
-    for nu in (0.0, 0.2, 0.45, 0.499):
-        yield f"bead on PMMA, nu {nu}", body_impact(
-            (GLASS_BEAD, dict(PMMA, poisson_ratio=nu)), "receding" if nu < 0.3 else "boltzmann",
-            5.0, 3.1, 0.001, "series")
-    for velocity, law in ((10.0, "boltzmann"), (10.0, "receding"), (0.5, "boltzmann"),
-                          (0.5, "receding")):
-        yield "the paper's rubber", body_impact((RIGID, RUBBER), law, "0.04", velocity, 0.01)
-    yield "SLS rubber, half space", body_impact((RIGID, RUBBER), "receding", 0, 2.0, 0.01)
-    for plate in (POWER, dict(POWER, exponent=0.1), CERF, LEFFLER, VISCOUS,
-                  dict(VOIGT, poisson_ratio=0.4)):
-        for law, thickness in (("boltzmann", 6.0), ("receding", 15.0)):
-            yield f"rigid on {plate['model']}", body_impact((RIGID, plate), law, thickness, 2.0,
-                                                            0.005)
-    solid = dict(PRONY, poisson_ratio=0.46)
-    for pair in ("eq1", "series"):
-        for law, thickness in (("boltzmann", 4.0), ("receding", 12.0)):
-            yield "SLS sphere on a Prony plate", body_impact((SOFT_SLS, solid), law, thickness,
-                                                             3.0, 0.006, pair)
-    draw = Draw(19)
-    while True:
-        case = draw.case()
-        made = {m["name"]: m for m in case["materials"]}
-        plate = made[case["plate"]["material"]]
-        if (plate["model"] in ("rigid", "elastic") or plate["poisson_ratio"] == 0.5
-                or "surface_radius" in case["plate"]):
-            continue
-        ball = made[case["sphere"]["material"]]
-        yield "random", body_impact(
-            (ball,) if ball is plate else (ball, plate), case["contact"]["law"],
-            draw.log(0.3, 100), case["velocity"], case["sphere"]["radius"],
-            case["contact"]["pair"])
-
-
-def solve_or_not(case):
-    """Outcome and accuracies, or why there is none."""
-    try:
-        ways = impact_solver.both(case)
-    except Exception as trouble:  # noqa: BLE001, a set goes on without the impact
-        return None, f"{type(trouble).__name__} {trouble}"
-    return ways
-
-
-def body_set(path, count):
-    """Solve impacts with `body` waves and write those that separate."""
-    out = head("Plates with waves by full elastodynamics, made by make_impacts.py --body.",
-               "Expected: " + ", ".join(EXPECT),
-               "Accuracy measured by two meshes and two sets of lines: of cor_sphere, of cor, the",
-               "largest of all others.")
-    cases = []
-    for remark, case in bodies():
-        cases.append((remark, case))
-        if len(cases) == count:
-            break
-    number = 0
-    with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
-        results = pool.map(solve_or_not, [case_of(text_of(case)) for _, case in cases])
-        for (remark, case), (fine, coarse) in zip(cases, results):
-            if fine is None:
-                print(remark, coarse, flush=True)
-                continue
-            errors = [abs(fine[k] - coarse[k]) for k in ("cor_sphere", "cor")]
-            coarse = dict(coarse, **{k: fine[k] for k in ("cor", "cor_sphere")})
-            errors.append(impact_solver.difference(fine, coarse))
-            number += 1
-            note = " ".join(f"{x:.0e}" for x in errors)
-            out += entry(f"{number} {remark}; accuracy {note}", text_of(case), fine)
-            print(number, remark, case["contact"]["law"], fine["cor_sphere"], note, flush=True)
-            path.write_text(out, encoding="utf-8")
-
-
 # ------------------------------------------------------------------------------------------ main
 
 def check(path):
@@ -530,7 +420,6 @@ def main():
     parser.add_argument("--seed", type=int, default=7, help="another seed, another set")
     parser.add_argument("--designed", action="store_true", help="make the designed set")
     parser.add_argument("--shapes", action="store_true", help="make the set of shapes and gravity")
-    parser.add_argument("--body", type=int, default=0, help="number of impacts with body waves")
     parser.add_argument("--output", default=HERE, type=pathlib.Path)
     options = parser.parse_args()
     if options.check:
@@ -545,8 +434,6 @@ def main():
         designed_set(options.output / "shapes.txt",
                      "Other shapes than spheres, and gravity: made by make_impacts.py --shapes.",
                      [*weighed(), *shaped()])
-    if options.body:
-        body_set(options.output / "body.txt", options.body)
 
 
 if __name__ == "__main__":

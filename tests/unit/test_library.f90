@@ -4,16 +4,17 @@
 program test_library
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, &
       ieee_value
-   use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
+   use vcor, only : base_bonded, base_free, base_half_space, base_sliding, case_t, case_text, &
+      cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
       contact_resting, contact_separated, contact_sticking, error_file, error_input, &
-      error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, fit_t, &
+      error_numerical, error_t, error_usage, estimate_t, face_t, failures_t, fit_material, fit_t, &
       history_table, impact_t, material_t, mittag_leffler_t, new_cerf, &
-      new_contact_law, new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, &
+      new_contact_law, new_contact_modulus, new_elastic, new_face, new_impact, new_mittag_leffler, &
       new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
       new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, power_law_t, &
       problem_of_case, problem_t, prony_t, read_case, read_case_text, read_data, samples_t, &
       solve_impact, solve_sweep, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
-      table_t, tabulated_t, trajectory_t, validate, version, waves_body, waves_constant, &
+      table_t, tabulated_t, trajectory_t, validate, version, waves_constant, &
       waves_frozen, waves_hereditary, waves_none, waves_relaxing, wp, write_csv, write_hdf5
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    implicit none
@@ -213,6 +214,7 @@ contains
       type(trajectory_t) :: trajectory
       type(problem_t) :: problem
       type(case_t) :: case
+      type(face_t) :: face
       class(solver_t), allocatable :: solver
       type(error_t), allocatable :: error
       real(wp) :: nan, infinite
@@ -262,11 +264,16 @@ contains
       call check_close(outcome%resilience, outcome%cor_sphere**2, 0.0_wp, "its resilience")
       call rubber%set_constants(error, density=1100.0_wp, poisson_ratio=0.45_wp)
       call success(error, "the density is set")
-      call new_plate(plate, rubber, 0.05_wp, waves_body, error)
-      call success(error, "a layer is built")
-      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error)
-      call solve_impact(solver, impact, trajectory, outcome, error)
-      call success(error, "an impact on a layer is solved")
+      call new_plate(plate, rubber, 0.0_wp, waves_none, error)
+      call new_face(face, rubber, steel, base_free, 0.1_wp, .true., error)
+      call success(error, "the face of a plate with waves is built")
+      call check(all([base_half_space, base_bonded, base_sliding] /= base_free), "four bases")
+      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error, face=face)
+      call solve_impact(impact, outcome, error)
+      call success(error, "an impact on a plate with waves is solved")
+      call check(ieee_is_nan(outcome%wave_energy), "its waves are not apart from the contact")
+      call solve_impact(impact, outcome, error, solver_settings_t(method='ive'))
+      call refused(error, error_input, "internal variables for waves in a plate")
    end subroutine test_refusals
 
    !> A case file, and the tables of its results

@@ -1,7 +1,6 @@
 !> Exact hereditary mechanics: receding contact, hereditary plate, bodies in series
 program test_mechanics
    use vcor_error, only : error_numerical, error_t
-   use vcor_impact_layer_sum, only : layer_misfit_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_hereditary, waves_none, &
@@ -533,8 +532,7 @@ contains
       type(plate_t) :: plate
       type(exponential_sum_t) :: terms
       type(error_t), allocatable :: error
-      type(layer_misfit_t) :: misfit
-      real(wp) :: time, expected, instant
+      real(wp) :: time, expected
       integer :: i, j, k, m
 
       call new_sls(prony(1), 2.7e5_wp, 10.0_wp, 3300.0_wp, error)
@@ -550,7 +548,7 @@ contains
          call success(error, "a hereditary plate is built")
          do j = 1, size(window)
             do k = 1, size(accuracy)
-               call plate%response(window(j), 1.5_wp, accuracy(k), terms, instant, misfit)
+               call plate%response(window(j), accuracy(k), terms)
                do m = 0, 24
                   time = window(j)*10.0_wp**(-0.25_wp*real(m, wp))
                   expected = plate%alpha(0.0_wp) + plate%memory_integral(time)

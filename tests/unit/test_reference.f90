@@ -1,5 +1,6 @@
 !> Every impact of reference.csv, by both methods
 program test_reference
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated
@@ -179,7 +180,9 @@ contains
                energy_share*accuracy + rounding, name//": wave_energy")
             call check_relative(outcome%initial_energy, r%initial_energy, closed_form, &
                name//": initial_energy")
-            call check_relative(outcome%inelasticity, r%inelasticity, closed_form, &
+            ! a kernel that is infinite at first has none
+            if (r%inelasticity > 0.0_wp .or. .not. ieee_is_nan(outcome%inelasticity)) &
+               call check_relative(outcome%inelasticity, r%inelasticity, closed_form, &
                name//": inelasticity")
             call check_close(outcome%energy_imbalance/r%initial_energy, 0.0_wp, &
                imbalance_share*accuracy + rounding, name//": energy_imbalance")

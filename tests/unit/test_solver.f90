@@ -478,10 +478,13 @@ contains
       type(error_t), allocatable :: error
 
       ! what the settings are by themselves
-      call check_text(method_for("auto", "product"), "ive", "auto is ive")
-      call check_text(method_for("direct", "product"), "direct", "what is asked for is taken")
-      call check_text(method_for("auto", "adams_bashforth"), "direct", &
+      call check_text(method_for("auto", "product", .false.), "ive", "auto is ive")
+      call check_text(method_for("direct", "product", .false.), "direct", &
+         & "what is asked for is taken")
+      call check_text(method_for("auto", "adams_bashforth", .false.), "direct", &
          & "auto is direct for the scheme of the paper")
+      call check_text(method_for("auto", "product", .true.), "coupled", &
+         & "auto is coupled for waves in a plate of any thickness")
       call new_solver(solver, settings, singular, error)
       call success(error, "auto solves a power law")
       call run(solver, singular, outcome)

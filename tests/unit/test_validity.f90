@@ -15,6 +15,7 @@ program test_validity
    call test_resistance()
    call test_thresholds()
    call test_cause()
+   call test_gain()
    call test_indentation()
    call finish()
 
@@ -44,6 +45,7 @@ contains
 
       call check(level_at(0, 0.0_wp) == level_good, "good where nothing is judged")
       do i = 1, size(thresholds)
+         if (thresholds(i)%measure == 'energy_loss') cycle
          associate (name => thresholds(i)%measure, row => thresholds(i))
             call check(level_at(i, below*row%caution) == level_good, name//" is good")
             call check(level_at(i, above*row%caution) == level_caution, name//": caution")
@@ -66,6 +68,7 @@ contains
       type(outcome_t) :: outcome
       type(surroundings_t) :: around
 
+      outcome = with_loss(0.5_wp, 1.0_wp)
       outcome%sphere_ratio = 0.0_wp
       select case (measure)
       case (0)
@@ -92,7 +95,11 @@ contains
          outcome%wave_energy = scale*0.25_wp
          outcome%half_space_loss = 0.25_wp + value
       case (9)
-         outcome%footprint_effect = -value
+         ! a plate is either thick or bends
+         outcome%initial_energy = scale
+         outcome%wave_energy = 0.0_wp
+         outcome%half_space_loss = 0.5_wp*value
+         outcome%bending_loss = value
       case default
          call check(.false., "every measure is tested")
       end select
@@ -101,11 +108,50 @@ contains
       call check(outcome%validity_cause == merge(measure, 0, level > level_good), "the cause")
    end function level_at
 
+   !> An outcome of which only restitution and energies are known
+   function with_loss(cor, energy_loss) result(outcome)
+      !> Both coefficients of restitution
+      real(wp), intent(in) :: cor
+      !> Energy loss [J]
+      real(wp), intent(in) :: energy_loss
+      type(outcome_t) :: outcome
+
+      outcome%cor = cor
+      outcome%cor_sphere = cor
+      outcome%cor_error = 1.0e-8_wp
+      outcome%cor_sphere_error = 1.0e-8_wp
+      outcome%initial_energy = 2.0_wp
+      outcome%energy_imbalance = 0.0_wp
+      outcome%energy_loss = energy_loss
+   end function with_loss
+
+   !> Energy from nothing is outside, whatever the measures say; rounding of a lossless impact is
+   !> not
+   subroutine test_gain()
+      type(outcome_t) :: outcome
+      type(surroundings_t) :: around
+      integer :: i
+
+      do i = 1, 4
+         if (i == 1) outcome = with_loss(1.0_wp + 1.0e-6_wp, 1.0_wp)
+         if (i == 2) outcome = with_loss(0.5_wp, -1.0e-6_wp)
+         if (i == 3) outcome = with_loss(1.0_wp + 1.0e-9_wp, -1.0e-9_wp)
+         if (i == 4) outcome = with_loss(0.5_wp, 1.0_wp)
+         outcome%sphere_ratio = 0.0_wp
+         outcome%contact_ratio = 0.9_wp
+         call judge(outcome, around)
+         call check(thresholds(outcome%validity_cause)%measure == merge('energy_loss  ', &
+            'contact_ratio', i <= 2), "energy from nothing outweighs all else")
+         call check(outcome%validity == level_outside, "and is outside")
+      end do
+   end subroutine test_gain
+
    !> The worst level counts, and in it what is farthest beyond its first threshold
    subroutine test_cause()
       type(outcome_t) :: outcome
       type(surroundings_t) :: around
 
+      outcome = with_loss(0.5_wp, 1.0_wp)
       outcome%weight_ratio = 0.09_wp
       outcome%sphere_ratio = 0.0_wp
       outcome%contact_ratio = 0.5_wp

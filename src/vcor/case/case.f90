@@ -522,33 +522,45 @@ contains
       end associate
       call note_change(self, address, entry%given)
       if (address == self%address('contact', 'mechanics') &
-          .or. address == self%address('plate', 'base')) call choose_mechanics(self)
+          .or. address == self%address('plate', 'base') &
+          .or. address == self%address('plate', 'waves') &
+          .or. address == self%address('solver', 'method')) call choose_mechanics(self)
    end subroutine set_entry
 
-   !> Set the keys of the mechanics that the user has not given, according to `mechanics` and `base`
+   !> Set the keys of the mechanics that the user has not given: by `mechanics` waves, law and pair;
+   !> without it a plate on a base has no waves; law and pair are also those of the coupled contact
+   !> where that is solved
    pure subroutine choose_mechanics(self)
       type(case_t), intent(inout) :: self
 
-      character(len=*), parameter :: groups_of(3) = [character(len=7) :: 'contact', 'contact', &
-         'plate'], keys(3) = [character(len=5) :: 'law', 'pair', 'waves'], &
-         exact(3) = [character(len=8) :: 'receding', 'series', 'body']
-      character(len=:), allocatable :: mechanics, base
-      type(address_t) :: address
-      integer :: i
+      character(len=:), allocatable :: mechanics, base, waves, method
+      logical :: is_exact
 
       call self%get('contact', 'mechanics', mechanics)
       call self%get('plate', 'base', base)
-      do i = 1, size(keys)
-         address = self%address(trim(groups_of(i)), trim(keys(i)))
-         if (self%given(trim(groups_of(i)), trim(keys(i)))) cycle
-         call self%unset(address)
-         if (mechanics == 'exact') then
-            call self%set(address, trim(exact(i)), given=.false.)
-         else if (base /= 'free' .and. keys(i) == 'waves') then
-            call self%set(address, 'none', given=.false.)
-         end if
-      end do
+      call self%get('solver', 'method', method)
+      is_exact = mechanics == 'exact'
+      call choose(self, 'plate', 'waves', trim(merge('body', 'none', is_exact)), &
+         is_exact .or. base /= 'free')
+      call self%get('plate', 'waves', waves)
+      is_exact = is_exact .or. waves == 'body' .or. method == 'coupled'
+      call choose(self, 'contact', 'law', 'receding', is_exact)
+      call choose(self, 'contact', 'pair', 'series', is_exact)
    end subroutine choose_mechanics
+
+   !> Set a key that is not given, to its default or another text
+   pure subroutine choose(self, group, key, text, is_chosen)
+      type(case_t), intent(inout) :: self
+      character(len=*), intent(in) :: group, key
+      !> The other text
+      character(len=*), intent(in) :: text
+      !> Whether to set this text instead of the default
+      logical, intent(in) :: is_chosen
+
+      if (self%given(group, key)) return
+      call self%unset(self%address(group, key))
+      if (is_chosen) call self%set(self%address(group, key), text, given=.false.)
+   end subroutine choose
 
    !> Set a number without checks: cheap, for a sweep. An equal number is not a change
    pure subroutine set_number(self, address, number)

@@ -143,9 +143,6 @@ module vcor_case_catalogue
          //"slides", choices="free bonded sliding", default="free"), &
       key_t("plate", "waves", text_key, "Model of the waves in the plate", &
          choices="none constant relaxing frozen hereditary body", default="relaxing"), &
-      key_t("plate", "footprint", real_key, &
-         "Radius of the disc that loads a plate with waves = 'body'; default: from the impact", &
-         "m", positive), &
       key_t("plate", "surface_radius", real_key, &
          "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
       key_t("plate", "extent", real_key, &
@@ -208,8 +205,8 @@ module vcor_case_catalogue
          models=relaxing_models), &
       !
       key_t("solver", "method", text_key, &
-         "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
-         choices="auto ive direct", default="auto"), &
+         "auto: coupled for waves = 'body', direct for scheme adams_bashforth, otherwise ive", &
+         choices="auto ive direct coupled", default="auto"), &
       key_t("solver", "scheme", text_key, "Scheme of the direct method", &
          choices="product adams_bashforth", default="product"), &
       key_t("solver", "time_step", real_key, "Time step; default: chosen by the solver", &
@@ -217,7 +214,7 @@ module vcor_case_catalogue
       key_t("solver", "end_time", real_key, &
          "Time at which the solver gives up; default: chosen by the solver", "s", positive), &
       key_t("solver", "accuracy", real_key, &
-         "Largest error of the COR; default: 1e-8 (ive) or 1e-6 (direct)", &
+         "Largest error of the COR; default: 1e-8 (ive), 1e-6 (direct), 1e-5 (coupled)", &
          range=accuracy_range), &
       key_t("solver", "form", text_key, "Form of Eq. (8); adams_bashforth only", &
          choices="a b", default="a"), &

@@ -8,8 +8,9 @@ module vcor_case_checks
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, key_row, &
       keys_of, last_row, list_key, real_key, row_for_model, wanted
    use vcor_case_grid, only : grid_t, new_grid
+   use vcor_case_printed, only : value_text
    use vcor_case_problem, only : material_of_case
-   use vcor_case_unread, only : why_no_shift, why_unread
+   use vcor_case_unread, only : has_body, method_of, why_no_shift, why_unread
    use vcor_case_values, only : range_message
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
@@ -101,6 +102,7 @@ contains
       call check_body(self, 'sphere', error)
       if (.not. allocated(error)) call check_body(self, 'plate', error)
       if (.not. allocated(error)) call check_temperature(self, error)
+      if (.not. allocated(error)) call check_coupled(self, error)
       if (.not. allocated(error)) call check_stem(self, error)
       if (.not. allocated(error)) call new_grid(self, grid, error)
    end subroutine validate
@@ -206,6 +208,52 @@ contains
       if (reason /= '') call self%refuse('impact', 'temperature', 1, 'the impact does not read ' &
          //'it: '//reason, error)
    end subroutine check_temperature
+
+   !> Check that keys do not contradict the coupled contact: it recedes, its pair is in series, it
+   !> is linear theory and takes its own steps. Defaults, as a completed case has them, are no
+   !> contradiction
+   subroutine check_coupled(self, error)
+      !> A case whose bodies have materials
+      type(case_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      !> Keys, and the value that each may have, if any
+      character(len=*), parameter :: keys(3, 8) = reshape([character(len=25) :: &
+         'contact', 'law', "'receding'", 'contact', 'pair', "'series'", &
+         'solver', 'scheme', "'product'", 'solver', 'form', "'a'", &
+         'solver', 'quadrature', "'trapezoid'", 'solver', 'volterra_order', '1', &
+         'solver', 'continue_after_separation', '.false.', 'solver', 'time_step', ''], [3, 8])
+      character(len=:), allocatable :: allowed, cause, found, method, waves
+      type(address_t) :: address
+      integer :: i
+
+      if (method_of(self) /= 'coupled' .and. .not. has_body(self)) return
+      call self%get('solver', 'method', method)
+      call self%get('plate', 'waves', waves)
+      cause = "solver.method = 'coupled'"
+      if (has_body(self)) cause = "plate.waves = 'body'"
+      if (all(method /= ['auto   ', 'coupled'])) then
+         call self%refuse('solver', 'method', 1, "found method = '"//method//"' with "//cause &
+            //", expected 'auto' or 'coupled', which alone solves it", error)
+      else if (all(waves /= ['none', 'body']) .and. why_unread(self, &
+               self%address('plate', 'waves')) == '') then
+         call self%refuse('plate', 'waves', 1, "found waves = '"//waves//"' with "//cause &
+            //", expected 'body' or 'none'", error)
+      end if
+      do i = 1, size(keys, 2)
+         if (allocated(error)) return
+         address = self%address(trim(keys(1, i)), trim(keys(2, i)))
+         if (.not. self%given(trim(keys(1, i)), trim(keys(2, i)))) cycle
+         ! a flat punch does not recede, and the pair of a rigid body is none
+         if (keys(1, i) == 'contact' .and. why_unread(self, address) /= '') cycle
+         found = value_text(catalogue(address%row), self%entry(address))
+         if (found == keys(3, i)) cycle
+         allowed = trim(keys(3, i))
+         if (allowed /= '') allowed = allowed//' or '
+         call self%refuse(trim(keys(1, i)), trim(keys(2, i)), 1, 'found '//trim(keys(2, i))//' = ' &
+            //found//' with '//cause//', expected '//allowed//'no such key', error)
+      end do
+   end subroutine check_coupled
 
    !> Check that the material of a body exists
    subroutine check_body(self, body, error)

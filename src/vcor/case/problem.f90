@@ -26,11 +26,12 @@ module vcor_case_problem
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law, profile_factor, &
       punch_factor, sphere_factor
+   use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, face_t, &
+      new_face
    use vcor_impact_layer_law, only : layer_t, lay, profile_t
-   use vcor_impact_plate, only : new_plate, waves_body, waves_constant, waves_frozen, &
-      waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_plate, only : new_plate, waves_constant, waves_frozen, waves_hereditary, &
+      waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_response, only : base_bonded, base_free, base_sliding
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : pi, standard_gravity, wp
@@ -67,7 +68,7 @@ module vcor_case_problem
    !> Addresses of the numbers from which an impact is made
    type :: numbers_t
       type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
-      type(address_t) :: half_thickness, thickness, footprint, half_angle, punch_radius
+      type(address_t) :: half_thickness, thickness, half_angle, punch_radius
       type(address_t) :: profile_coefficient, profile_power
       type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
@@ -93,8 +94,10 @@ module vcor_case_problem
       character(len=11), private :: shape = 'sphere'
       !> One of base_free, base_bonded and base_sliding
       integer, private :: base = base_free
-      !> One of the `waves_*` constants
+      !> Waves of a thin plate, one of the `waves_*` constants
       integer, private :: waves = waves_relaxing
+      !> Whether the plate has waves as it is, of any thickness
+      logical, private :: has_body = .false.
       !> One of the `pair_*` constants
       integer, private :: pair = pair_eq1
       !> Whether the Volterra series has its second term
@@ -120,7 +123,7 @@ contains
       character(len=*), parameter :: wave_names(*) = [character(len=10) :: 'none', 'constant', &
          'relaxing', 'frozen', 'hereditary', 'body']
       integer, parameter :: waves(*) = [waves_none, waves_constant, waves_relaxing, waves_frozen, &
-         waves_hereditary, waves_body]
+         waves_hereditary, waves_none]
       character(len=*), parameter :: base_names(*) = [character(len=7) :: 'free', 'bonded', &
          'sliding']
       integer, parameter :: bases(*) = [base_free, base_bonded, base_sliding]
@@ -145,7 +148,6 @@ contains
       self%at%half_thickness = case%address('plate', 'half_thickness')
       self%at%thickness = case%address('plate', 'thickness')
       self%at%extent = case%address('plate', 'extent')
-      self%at%footprint = case%address('plate', 'footprint')
       self%at%time_step = case%address('solver', 'time_step')
       self%at%end_time = case%address('solver', 'end_time')
       self%at%accuracy = case%address('solver', 'accuracy')
@@ -153,6 +155,7 @@ contains
 
       call case%get('plate', 'waves', text)
       self%waves = waves(findloc(wave_names == text, .true., dim=1))
+      self%has_body = text == 'body'
       call case%get('plate', 'base', text)
       self%base = bases(findloc(base_names == text, .true., dim=1))
       call case%get('sphere', 'shape', text)
@@ -425,8 +428,7 @@ contains
          end if
       end if
       call set_shape(self, case, factor, error)
-      if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity, &
-         number_or_zero(case, self%at%footprint))
+      if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity)
       if (allocated(error)) return
       call update_surroundings(self, case)
       call update_solver(self, case, error)
@@ -447,44 +449,11 @@ contains
          call raise(error, error_input, 'the problem is empty: problem_of_case has not built it')
          return
       end if
-      call prepare(self)
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
       if (allocated(error) .or. outcome%status /= contact_separated) return
-      if (self%impact%plate%layered()) &
-         outcome%footprint_effect = cor_with_larger_footprint(self) - outcome%cor
       call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere%material, &
          self%plate%material)
    end subroutine solve
-
-   !> Precompute the layer for method ive
-   subroutine prepare(self)
-      type(problem_t), intent(inout) :: self
-
-      if (self%impact%plate%layered() .and. self%settings%method /= 'direct') &
-         call self%impact%plate%prepare(self%impact%law%contact_time*self%impact%time_scale(), &
-            self%impact%law%start_exponent)
-   end subroutine prepare
-
-   !> Coefficient of restitution with a 1.25 times larger disc on the layer
-   function cor_with_larger_footprint(self) result(cor)
-      !> The problem, of a layer
-      type(problem_t), intent(inout) :: self
-      !> Coefficient [-]; NaN if there is none
-      real(wp) :: cor
-
-      real(wp), parameter :: larger = 1.25_wp
-      type(trajectory_t) :: trajectory
-      type(outcome_t) :: outcome
-      type(error_t), allocatable :: error
-      real(wp) :: footprint
-
-      footprint = self%impact%plate%footprint
-      self%impact%plate%footprint = larger*footprint
-      call prepare(self)
-      call solve_impact(self%solver, self%impact, trajectory, outcome, error)
-      self%impact%plate%footprint = footprint
-      cor = outcome%cor
-   end function cor_with_larger_footprint
 
    !> Update the data for the measures of validity
    subroutine update_surroundings(self, case)
@@ -501,7 +470,7 @@ contains
          self%surroundings%thickness = 2.0_wp*half_thickness(self, case)
       self%surroundings%on_base = self%base /= base_free .and. .not. self%plate%material%rigid
       self%surroundings%is_true = self%shape == 'true_sphere'
-      self%surroundings%is_layer = self%impact%plate%layered()
+      self%surroundings%has_body = self%impact%face%has_waves
       self%surroundings%extent = case%number(self%at%extent)
       self%surroundings%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
       self%surroundings%is_weighed = self%impact%gravity > 0.0_wp
@@ -515,7 +484,7 @@ contains
       call self%surroundings%follow(self%plate%material%poisson_ratio())
    end subroutine update_surroundings
 
-   !> Build contact modulus and plate of the impact
+   !> Build contact modulus, plate and face of the impact
    subroutine build_contact(self, case, error)
       !> The problem, its materials built
       type(problem_t), intent(inout) :: self
@@ -527,10 +496,34 @@ contains
          self%sphere%data%deforms_as(self%plate%data), error, self%pair)
       if (.not. allocated(error)) call new_plate(self%impact%plate, self%plate%material, &
          half_thickness(self, case), self%waves, error)
+      if (.not. allocated(error)) call build_face(self, case, error)
       if (.not. allocated(error)) return
       if (.not. allocated(error%about)) return
       if (error%about == 'density') error%item = self%plate%address%item
    end subroutine build_contact
+
+   !> Build the face of the impact if the coupled contact is to be solved. A rigid plate has no
+   !> waves
+   subroutine build_face(self, case, error)
+      !> The problem, its materials built
+      type(problem_t), intent(inout) :: self
+      type(case_t), intent(in) :: case
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: base
+      logical :: has_waves
+
+      self%impact%face = face_t()
+      has_waves = self%has_body .and. .not. self%plate%material%rigid
+      if (.not. (has_waves .or. self%settings%method == 'coupled')) return
+      base = self%base
+      ! without waves a wide free plate is as stiff as a half space
+      if (base == base_free .and. .not. (has_waves .and. half_thickness(self, case) > 0.0_wp)) &
+         base = base_half_space
+      call new_face(self%impact%face, self%plate%material, self%sphere%material, base, &
+         2.0_wp*half_thickness(self, case), has_waves, error)
+   end subroutine build_face
 
    !> Set the contact law of the shape of the striking body
    subroutine set_shape(self, case, factor, error)
@@ -597,7 +590,7 @@ contains
       if (.not. layer%thickness > 0.0_wp) then
          call raise(error, error_input, 'a layer on a base needs its thickness [m], or ' &
             //'half_thickness', about='base thickness')
-      else if (all(self%waves /= [waves_none, waves_body])) then
+      else if (self%waves /= waves_none) then
          call raise(error, error_input, 'the waves of a thin plate are those of a free one, ' &
             //"expected waves = 'none' or 'body' with a base", about='waves base')
       else if (self%settings%scheme /= 'product') then
@@ -605,7 +598,7 @@ contains
             //"plate; use method = 'ive', or 'direct' with scheme = 'product'", &
             about='scheme base')
       end if
-      if (allocated(error) .or. self%waves == waves_body) return
+      if (allocated(error) .or. self%has_body .or. self%settings%method == 'coupled') return
       layer%base = self%base
       layer%poisson_ratio = self%plate%material%poisson_ratio()
       if (self%sphere%material%rigid) return

@@ -14,7 +14,7 @@ module vcor_case_unread
    implicit none
    private
 
-   public :: why_unread, why_no_shift, refuse_unread
+   public :: why_unread, why_no_shift, refuse_unread, method_of, has_body
 
 contains
 
@@ -101,7 +101,9 @@ contains
       !> The reason; empty if the key is read
       character(len=:), allocatable :: reason
 
-      character(len=:), allocatable :: method, scheme
+      character(len=*), parameter :: why_coupled = 'method coupled is linear theory and takes ' &
+         //"its own steps: this key is for method = 'direct'"
+      character(len=:), allocatable :: scheme
       integer :: order
 
       associate (group => address%group, item => address%item)
@@ -111,9 +113,10 @@ contains
             'sphere.shape', 'sphere.radius', 'sphere.material', 'sphere.mass', &
             'sphere.half_angle', 'sphere.punch_radius', 'sphere.profile_coefficient', &
             'sphere.profile_power', 'plate.material', 'plate.surface_radius', 'solver.method', &
-            'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
-            'solver.continue_after_separation')
+            'solver.end_time', 'solver.accuracy')
             continue
+         case ('solver.scheme', 'solver.volterra_order', 'solver.continue_after_separation')
+            if (method_of(case) == 'coupled') reason = why_coupled
          case ('output.csv', 'output.hdf5', 'output.history', 'output.directory', 'output.stem')
             continue
          case ('sweep.parameter', 'sweep.values', 'sweep.start', 'sweep.stop', 'sweep.count')
@@ -128,10 +131,6 @@ contains
             reason = why_plate_rests(case)
          case ('plate.waves', 'plate.half_thickness', 'plate.thickness', 'plate.base')
             if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
-         case ('plate.footprint')
-            call case%get('plate', 'waves', method)
-            reason = why_plate_rests(case)
-            if (reason == '' .and. method /= 'body') reason = "it is for plate.waves = 'body'"
          case ('contact.mechanics')
             if (case%given('contact', 'law') .and. case%given('contact', 'pair') &
                 .and. case%given('plate', 'waves')) &
@@ -142,13 +141,13 @@ contains
          case ('contact.pair')
             reason = why_no_pair(case)
          case ('solver.time_step')
-            call case%get('solver', 'method', method)
-            call case%get('solver', 'scheme', scheme)
-            if (method_for(method, scheme) == 'ive') &
-               reason = "method ive takes its own steps, solver.time_step is for method = 'direct'"
+            if (method_of(case) == 'ive') reason = 'method ive takes its own steps, ' &
+               //"solver.time_step is for method = 'direct'"
+            if (method_of(case) == 'coupled') reason = why_coupled
          case ('solver.form', 'solver.quadrature')
             call case%get('solver', 'scheme', scheme)
             if (scheme /= 'adams_bashforth') reason = "it is for scheme = 'adams_bashforth'"
+            if (method_of(case) == 'coupled') reason = why_coupled
          case ('solver.volterra_coefficient')
             call case%get('solver', 'volterra_order', order)
             if (order /= 2) reason = 'it is for solver.volterra_order = 2'
@@ -303,6 +302,30 @@ contains
          end if
       end if
    end function why_weightless
+
+   !> Whether the impact has waves in a plate of any thickness; a rigid plate has none
+   pure function has_body(case)
+      type(case_t), intent(in) :: case
+      logical :: has_body
+
+      character(len=:), allocatable :: waves
+
+      call case%get('plate', 'waves', waves)
+      has_body = waves == 'body' .and. body_model(case, 'plate') /= 'rigid'
+   end function has_body
+
+   !> Method in use
+   pure function method_of(case) result(name)
+      type(case_t), intent(in) :: case
+      !> ive, direct or coupled
+      character(len=:), allocatable :: name
+
+      character(len=:), allocatable :: method, scheme
+
+      call case%get('solver', 'method', method)
+      call case%get('solver', 'scheme', scheme)
+      name = method_for(method, scheme, has_body(case))
+   end function method_of
 
    !> Model of the material of a body
    pure function body_model(case, body) result(model)

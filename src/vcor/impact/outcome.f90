@@ -1,11 +1,11 @@
 !> Outcome of an impact: the quantities that users ask for
 module vcor_impact_outcome
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_impulse, col_indentation, &
-      col_plate_velocity, col_sphere, col_time, col_velocity, contact_resting, contact_separated, &
-      contact_unknown, trajectory_t
+   use vcor_impact_trajectory, only : col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
+      contact_resting, contact_separated, contact_unknown, trajectory_t
    use vcor_kinds, only : pi, wp
    implicit none
    private
@@ -104,8 +104,6 @@ module vcor_impact_outcome
       !> Energy that bending of the plate would take, which is not computed, over `initial_energy`
       !> [-]
       real(wp) :: bending_loss = none
-      !> Change of `cor` with a footprint of the layer 1.25 times larger [-]
-      real(wp) :: footprint_effect = none
       !> Loss tangent of the contact modulus at pi/t0 [-]
       real(wp) :: peak_loss_tangent = none
       !> One of the `level_*` constants of `vcor_impact_validity`
@@ -117,6 +115,7 @@ module vcor_impact_outcome
       procedure :: is_finite
       procedure :: misses
       procedure :: gains_energy
+      procedure :: is_coupled
    end type outcome_t
 
 contains
@@ -159,6 +158,12 @@ contains
       outcome%wave_energy = sum(trajectory%share(0:n) &
          *trajectory%state(col_plate_velocity, 0:n))
       outcome%energy_loss = outcome%hysteresis_energy + outcome%wave_energy
+      if (ieee_is_nan(trajectory%state(col_plate, n))) then
+         ! contact and plate solved as one: far away the plate is at rest, and the faces at the edge
+         ! of the contact have no velocity apart
+         outcome%cor = outcome%cor_sphere
+         outcome%energy_loss = sum(trajectory%share(0:n)*trajectory%state(col_sphere_velocity, 0:n))
+      end if
       outcome%final_energy = outcome%initial_energy*outcome%resilience
       outcome%weight_work = impact%mass*impact%gravity*trajectory%state(col_sphere, n)
       ! the work done on the sphere, KE0 (1 - cor_sphere^2) from the impulse, and that of its weight
@@ -166,7 +171,7 @@ contains
          + outcome%weight_work - outcome%energy_loss
 
       outcome%min_frequency = 2.0_wp*pi/outcome%contact_time
-      outcome%inelasticity = impact%inelasticity()
+      if (.not. outcome%is_coupled()) outcome%inelasticity = impact%inelasticity()
       modulus = impact%modulus%dynamic_modulus(outcome%min_frequency)
       outcome%loss_tangent = aimag(modulus)/real(modulus, wp)
       outcome%cor_error = trajectory%cor_error
@@ -199,9 +204,8 @@ contains
       is_finite = all(ieee_is_finite([self%cor, self%cor_sphere, self%contact_time, &
          self%max_indentation, self%time_of_max_indentation, self%max_force, &
          self%time_of_max_force, self%residual_indentation, self%residual_ratio, &
-         self%hysteresis_energy, self%wave_energy, self%initial_energy, self%final_energy, &
-         self%energy_imbalance, self%min_frequency, self%loss_tangent, self%cor_error, &
-         self%cor_sphere_error]))
+         self%energy_loss, self%initial_energy, self%final_energy, self%energy_imbalance, &
+         self%min_frequency, self%loss_tangent, self%cor_error, self%cor_sphere_error]))
    end function is_finite
 
    !> Whether the estimated error exceeds the accuracy requested; false without separation
@@ -212,6 +216,15 @@ contains
       misses = self%status == contact_separated .and. self%accuracy > 0.0_wp
       if (misses) misses = max(self%cor_error, self%cor_sphere_error) > self%accuracy
    end function misses
+
+   !> Whether contact and plate were solved as one, so that the energy loss has no parts
+   elemental function is_coupled(self)
+      !> The outcome of an impact that ended in separation
+      class(outcome_t), intent(in) :: self
+      logical :: is_coupled
+
+      is_coupled = ieee_is_nan(self%wave_energy) .and. .not. ieee_is_nan(self%energy_loss)
+   end function is_coupled
 
    !> Whether the sphere or the two bodies separate with more energy than they had, beyond the
    !> stated errors: the sum of all forces on it did work, or it sank so far that its weight did

@@ -1,11 +1,10 @@
 !> Plate that carries energy of the impact away in waves: its deflection U under the contact force
 !>
 !> A thin plate has U = alpha I with Zener's alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2), Eq. (3);
-!> a hereditary one has a memory (`vcor_impact_memory`), a thick one is a layer.
+!> a hereditary one has a memory (`vcor_impact_memory`). Waves in a plate of any thickness belong
+!> to the face, `vcor_impact_face`.
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_layer, only : layer_t, new_layer
-   use vcor_impact_layer_sum, only : layer_misfit_t, layer_sum_t, new_layer_sum
    use vcor_impact_memory, only : memory_t, new_memory
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -15,7 +14,6 @@ module vcor_impact_plate
 
    public :: plate_t, new_plate
    public :: waves_none, waves_constant, waves_relaxing, waves_frozen, waves_hereditary
-   public :: waves_body
 
    !> Plate models: no motion, U = 0
    integer, parameter :: waves_none = 0
@@ -27,8 +25,6 @@ module vcor_impact_plate
    integer, parameter :: waves_frozen = 3
    !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a thin viscoelastic plate
    integer, parameter :: waves_hereditary = 4
-   !> U = C F in the Laplace domain, with the compliance C of a layer or a half space
-   integer, parameter :: waves_body = 5
 
    !> Lower bound of the modulus in alpha [Pa]: for a modulus that has decayed to zero the plate
    !> yields at once, but alpha, its rate and their products stay finite
@@ -47,12 +43,6 @@ module vcor_impact_plate
       class(material_t), allocatable :: material
       !> Memory of a hereditary plate, otherwise unallocated
       type(memory_t), allocatable :: memory
-      !> The layer of `waves_body`, otherwise unallocated
-      type(layer_t), allocatable :: layer
-      !> Sums of exponentials of the layer made in advance, unallocated without any
-      type(layer_sum_t), allocatable :: sums(:)
-      !> Radius of the disc that loads the layer, the footprint [m], > 0
-      real(wp), public :: footprint = 0.0_wp
    contains
       procedure :: moves
       procedure :: alpha
@@ -60,17 +50,10 @@ module vcor_impact_plate
       procedure :: alpha_after
       procedure :: alpha_rate
       procedure :: frozen
-      procedure :: layered
-      procedure :: is_sheet
-      procedure :: is_outpaced
       procedure :: hereditary
       procedure :: drifts
-      procedure, nopass :: window
-      procedure :: prepare
       procedure :: response
       procedure :: memory_integral
-      procedure :: compliance
-      procedure :: instant
    end type plate_t
 
 contains
@@ -80,7 +63,7 @@ contains
       class(plate_t), intent(in) :: self
       logical :: moves
 
-      moves = self%coefficient > 0.0_wp .or. self%layered()
+      moves = self%coefficient > 0.0_wp
    end function moves
 
    !> Build a plate
@@ -88,7 +71,7 @@ contains
       type(plate_t), intent(out) :: self
       !> Its material; a rigid plate does not move
       class(material_t), intent(in) :: material
-      !> Half thickness h [m], > 0 if the plate moves; 0 for a half space of `waves_body`
+      !> Half thickness h [m], > 0 if the plate moves
       real(wp), intent(in) :: half_thickness
       !> One of the `waves_*` constants
       integer, intent(in) :: waves
@@ -98,20 +81,19 @@ contains
       real(wp), parameter :: largest = 1.0e60_wp
 
       if (all(waves /= [waves_none, waves_constant, waves_relaxing, waves_frozen, &
-          waves_hereditary, waves_body])) call raise(error, error_input, 'unknown kind of waves, ' &
+          waves_hereditary])) call raise(error, error_input, 'unknown kind of waves, ' &
          //'expected one of the constants waves_*', about='waves')
       if (.not. material%is_built()) call raise(error, error_input, &
          'the material of the plate is empty: no procedure new_... has built it')
       if (allocated(error) .or. waves == waves_none .or. material%rigid) return
-      if (.not. half_thickness > 0.0_wp .and. waves /= waves_body) then
+      if (.not. half_thickness > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs half_thickness > 0 [m]; use ' &
             //"waves = 'none' for a half space", about='half_thickness')
       else if (.not. material%density() > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs the density of its ' &
             //"material; use waves = 'none' for a half space", about='density')
       else if (max(half_thickness, material%density()) > largest &
-               .or. material%density() < 1.0_wp/largest .or. half_thickness < 1.0_wp/largest &
-               .and. half_thickness > 0.0_wp) then
+               .or. min(half_thickness, material%density()) < 1.0_wp/largest) then
          call raise(error, error_input, 'half_thickness or density of the plate are beyond all ' &
             //'that can be computed', about='half_thickness density')
       else if (.not. material%glassy() > 0.0_wp .and. waves < waves_hereditary) then
@@ -126,12 +108,6 @@ contains
       end if
       if (allocated(error)) return
 
-      if (waves == waves_body) then
-         self%waves = waves
-         allocate (self%layer)
-         call new_layer(self%layer, material, 2.0_wp*half_thickness)
-         return
-      end if
       self%coefficient = sqrt(3.0_wp*material%density()/material%plane_strain_factor()) &
          /(16.0_wp*material%density()*half_thickness**2)
       if (material%glassy() > 0.0_wp) self%initial = self%coefficient/sqrt(material%glassy())
@@ -189,15 +165,11 @@ contains
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
-      !> Deflection per impulse [m/(N s)]; of a layer, that of an impulse spread over the time
+      !> Deflection per impulse [m/(N s)]
       real(wp) :: value
-
-      real(wp), parameter :: enough = 1.0e-3_wp
 
       value = self%alpha(t)
       if (allocated(self%memory)) value = value + self%memory_integral(t)
-      if (self%layered()) value = sum(real(self%layer%compliance(cmplx(1.0_wp/t, 0.0_wp, wp), &
-         [self%footprint], enough), wp))/t
    end function alpha_after
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'
@@ -215,45 +187,8 @@ contains
       !> False for an elastic thin plate
       logical :: hereditary
 
-      hereditary = allocated(self%memory) .or. allocated(self%layer)
+      hereditary = allocated(self%memory)
    end function hereditary
-
-   !> Whether the plate is a layer or a half space of `waves_body`
-   elemental function layered(self)
-      !> The plate
-      class(plate_t), intent(in) :: self
-      logical :: layered
-
-      layered = allocated(self%layer)
-   end function layered
-
-   !> Whether it is a layer so thin compared with the footprint that integrating its compliance
-   !> takes too long
-   elemental function is_sheet(self)
-      class(plate_t), intent(in) :: self
-      logical :: is_sheet
-
-      real(wp), parameter :: thinnest = 0.01_wp
-
-      is_sheet = self%layered()
-      if (is_sheet) is_sheet = self%layer%thickness > 0.0_wp &
-         .and. self%layer%thickness < thinnest*self%footprint
-   end function is_sheet
-
-   !> Whether the waves of a layer travel so short a way, compared with the footprint, during the
-   !> contact that integrating its compliance takes too long
-   elemental function is_outpaced(self, contact_time)
-      class(plate_t), intent(in) :: self
-      !> Expected contact time [s], > 0
-      real(wp), intent(in) :: contact_time
-      logical :: is_outpaced
-
-      real(wp), parameter :: shortest = 0.1_wp
-
-      is_outpaced = self%layered()
-      if (is_outpaced) is_outpaced = self%layer%shear_wave_path(contact_time) &
-         < shortest*self%footprint
-   end function is_outpaced
 
    !> Whether U' - alpha F is a variable of its own and not alpha' I
    elemental function drifts(self)
@@ -263,79 +198,20 @@ contains
       drifts = self%frozen() .or. self%hereditary()
    end function drifts
 
-   !> Time for which a layer's sum of exponentials holds, rounded up to a step of a ladder so that
-   !> impacts of similar duration share it
-   elemental function window(contact_time)
-      !> Expected contact time [s], > 0
-      real(wp), intent(in) :: contact_time
-      !> Time [s]
-      real(wp) :: window
-
-      real(wp), parameter :: margin = 1.25_wp, ladder = 2.0_wp**0.25_wp
-
-      window = ladder**ceiling(log(margin*contact_time)/log(ladder))
-   end function window
-
-   !> Make the sum of a layer in advance, for the band of its footprint and the window of a contact
-   !> time
-   pure subroutine prepare(self, contact_time, exponent)
-      !> The plate, a layer
-      class(plate_t), intent(inout) :: self
-      !> Expected contact time [s], > 0
-      real(wp), intent(in) :: contact_time
-      !> Exponent of the contact
-      real(wp), intent(in) :: exponent
-
-      ! maximum number of sums kept
-      integer, parameter :: most = 100
-      type(layer_sum_t) :: sum
-      real(wp) :: window
-
-      window = self%window(contact_time)
-      if (.not. allocated(self%sums)) allocate (self%sums(0))
-      if (any(self%sums%holds(self%footprint, window, exponent))) return
-      call new_layer_sum(sum, self%layer, self%footprint, window, exponent)
-      if (size(self%sums) == most) self%sums = [sum]
-      self%sums = [self%sums, sum]
-   end subroutine prepare
-
-   !> Response of a plate with memory as a sum of exponentials, U' = viscosity F + instant F' + int
-   !> psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
-   pure subroutine response(self, window, exponent, accuracy, terms, instant, misfit)
+   !> Response of a plate with memory as a sum of exponentials, U' = viscosity F + int psi(t - x)
+   !> F(x) dx with psi = sum_k w_k exp(-l_k t)
+   pure subroutine response(self, window, accuracy, terms)
       !> The plate, with memory
       class(plate_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Exponent of the contact; has an effect for a layer only
-      real(wp), intent(in) :: exponent
-      !> Wanted relative accuracy, > 0; has no effect for a layer
+      !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
       !> psi [m/(N s2)], with alpha [m/(N s)] as its viscosity; `terms%error` is that of the
-      !> velocity under a constant force, relative, and 0 for a layer
+      !> velocity under a constant force, relative
       type(exponential_sum_t), intent(out) :: terms
-      !> Deflection per force that follows at once [m/N], <= 0; not zero only for a layer
-      real(wp), intent(out) :: instant
-      !> Misfit of the layer's compliance; 0 for other plates
-      type(layer_misfit_t), intent(out) :: misfit
 
-      type(layer_sum_t) :: sum
-      integer :: i
-
-      instant = 0.0_wp
-      if (allocated(self%layer)) then
-         instant = self%layer%instant(self%footprint)
-         i = 0
-         if (allocated(self%sums)) i = findloc(self%sums%holds(self%footprint, window, exponent), &
-            .true., 1)
-         if (i > 0) then
-            call self%sums(i)%at(self%footprint, terms, misfit)
-         else
-            call new_layer_sum(sum, self%layer, self%footprint, window, exponent)
-            call sum%at(self%footprint, terms, misfit)
-         end if
-      else
-         call self%memory%exponentials(window, accuracy, terms)
-      end if
+      call self%memory%exponentials(window, accuracy, terms)
    end subroutine response
 
    !> Integral from 0 to t of the memory psi of a hereditary plate
@@ -349,32 +225,6 @@ contains
 
       value = self%memory%integral(t)
    end function memory_integral
-
-   !> Compliance C(s) - C(oo) of a layer
-   pure function compliance(self, s) result(c)
-      !> The plate, a layer
-      class(plate_t), intent(in) :: self
-      !> Laplace variable [1/s], real part > 0
-      complex(wp), intent(in) :: s
-      !> Compliance [m/N]
-      complex(wp) :: c
-
-      real(wp), parameter :: accuracy = 3.0e-9_wp
-
-      associate (all => self%layer%compliance(s, [self%footprint], accuracy))
-         c = all(1) - self%instant()
-      end associate
-   end function compliance
-
-   !> Compliance C(oo) of a layer
-   elemental function instant(self) result(c)
-      class(plate_t), intent(in) :: self
-      !> Deflection per force [m/N], <= 0; 0 for all other plates
-      real(wp) :: c
-
-      c = 0.0_wp
-      if (self%layered()) c = self%layer%instant(self%footprint)
-   end function instant
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b), with 1/E_b = (alpha/coefficient)^2
    elemental function alpha_rate(self, t, alpha) result(value)

@@ -40,8 +40,8 @@ module vcor_impact_problem
       type(plate_t) :: plate
       !> Contact law
       type(contact_law_t) :: law
-      !> The face that is struck, for method coupled, which takes from it what modulus, plate and law
-      !> are for the other methods
+      !> The face that is struck, for method coupled, which takes from it what modulus, plate and
+      !> law are for the other methods
       type(face_t) :: face
    contains
       procedure :: launch
@@ -61,8 +61,6 @@ module vcor_impact_problem
       procedure :: outruns
       procedure :: first_force
       procedure :: contact_radius
-      procedure :: expected_radius
-      procedure :: dent_at_once
       procedure :: springs_back
       procedure :: inelasticity
       procedure :: inelasticity_at
@@ -73,7 +71,7 @@ contains
 
    !> Build an impact
    pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, &
-                              error, law, gravity)
+                              error, law, gravity, face)
       type(impact_t), intent(out) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -90,6 +88,9 @@ contains
       type(contact_law_t), intent(in), optional :: law
       !> Gravity [m/s2], >= 0; absent: 0
       real(wp), intent(in), optional :: gravity
+      !> The face that is struck; needed by method coupled, which solves every impact whose face has
+      !> waves
+      type(face_t), intent(in), optional :: face
 
       real(wp) :: factor
 
@@ -101,12 +102,13 @@ contains
       self%modulus = modulus
       self%plate = plate
       if (present(law)) self%law = law
+      if (present(face)) self%face = face
       call sphere_factor(radius, surface_radius, factor, error)
       if (.not. allocated(error)) call self%launch(velocity, mass, factor, error, gravity)
    end subroutine new_impact
 
    !> Change the motion, mass and shape of the body; modulus, plate and law remain
-   pure subroutine launch(self, velocity, mass, factor, error, gravity, footprint)
+   pure subroutine launch(self, velocity, mass, factor, error, gravity)
       class(impact_t), intent(inout) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -117,13 +119,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Gravity [m/s2], >= 0; absent: 0
       real(wp), intent(in), optional :: gravity
-      !> Radius of the disc that loads a layer [m]; absent or 0: 1.6 times the `expected_radius`,
-      !> which is larger than the contact
-      real(wp), intent(in), optional :: footprint
 
       ! keeps energies and their products within the range of numbers
       real(wp), parameter :: largest = 1.0e60_wp
-      real(wp) :: time_scale
 
       ! the computed mass of a tiny sphere may underflow to zero
       if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. factor > 0.0_wp)) then
@@ -144,33 +142,7 @@ contains
       self%velocity = velocity
       self%mass = mass
       self%factor = factor
-      if (.not. self%plate%layered()) return
-      self%plate%footprint = 0.0_wp
-      if (present(footprint)) self%plate%footprint = footprint
-      ! to full accuracy, for with the usual tolerance the footprint and the results would jump
-      time_scale = self%time_scale(1.0e-14_wp)
-      if (.not. self%plate%footprint > 0.0_wp) &
-         self%plate%footprint = 1.6_wp*self%expected_radius(time_scale)
-      if (self%plate%is_sheet()) then
-         call raise(error, error_input, 'the plate is less than a hundredth of the disc that ' &
-            //"loads it: use waves = 'hereditary'", about='half_thickness footprint')
-      else if (self%plate%is_outpaced(self%law%contact_time*time_scale)) then
-         call raise(error, error_input, 'the impact is faster than the waves of the plate, which ' &
-            //'go no farther in the contact than a tenth of the disc that loads it: no plate ' &
-            //"model holds; waves = 'none' leaves them out", about='velocity footprint')
-      end if
    end subroutine launch
-
-   !> Largest contact radius of an elastic impact with time scale T
-   pure function expected_radius(self, time_scale) result(radius)
-      class(impact_t), intent(in) :: self
-      !> Time scale T [s]
-      real(wp), intent(in) :: time_scale
-      !> Radius [m]
-      real(wp) :: radius
-
-      radius = self%contact_radius(self%law%depth*self%speed_scale(time_scale)*time_scale)
-   end function expected_radius
 
    !> Distance covered by the sphere without a contact force, v0 t + g t^2/2
    elemental function free_path(self, t) result(path)
@@ -229,22 +201,6 @@ contains
 
       radius = self%law%radius(self%factor, indentation)
    end function contact_radius
-
-   !> Share of the contact's dent, at an indentation that grows at once, that a layer does not take
-   !> back, as inertia holds its face: 1 for other plates, > 0 if the impact has a solution
-   elemental function dent_at_once(self, indentation) result(share)
-      class(impact_t), intent(in) :: self
-      !> Indentation [m], >= 0
-      real(wp), intent(in) :: indentation
-      !> Share [-]
-      real(wp) :: share
-
-      share = 1.0_wp
-      if (.not. self%plate%layered()) return
-      ! 0 for a plate that is infinitely stiff at first, whose contact may be infinitely stiff, too
-      if (self%plate%instant() < 0.0_wp) share = 1.0_wp + self%plate%instant()*self%kernel(0.0_wp) &
-         *self%law%slope(indentation)
-   end function dent_at_once
 
    !> Kernel k(t) = K E'(t), Eq. (5)
    elemental function kernel(self, t) result(k)

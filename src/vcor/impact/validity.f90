@@ -65,9 +65,7 @@ module vcor_impact_validity
       ! the same, of a plate that is free to bend; judged is the larger of the two
       threshold_t('bending_loss', 0.01_wp, 0.1_wp), &
       ! `gains_energy`, a contradiction: huge if so, which outweighs all others
-      threshold_t('energy_loss', 1.0_wp, 1.0_wp), &
-      ! absolute value: dependence of a layer's cor on the footprint, which is a choice
-      threshold_t('footprint_effect', 0.01_wp, 0.1_wp)]
+      threshold_t('energy_loss', 1.0_wp, 1.0_wp)]
 
    !> Factor of `sphere_ratio` for the thresholds of contact_ratio. A deformable sphere is not a
    !> half space: its dent is smaller by 0.5 a/r, so the contact is 4 % shorter at a/r = 0.13 and 10
@@ -90,9 +88,9 @@ module vcor_impact_validity
       logical :: on_base = .false.
       !> Whether the sphere is not taken as a paraboloid
       logical :: is_true = .false.
-      !> Whether the plate is computed as a layer; measures of thin plates and half spaces do not
-      !> apply then
-      logical :: is_layer = .false.
+      !> Whether the waves are those of the plate as it is, of any thickness: what neglects them, or
+      !> takes the plate as thin or as a half space, is not judged then
+      logical :: has_body = .false.
       !> Whether the sphere is dropped from a given height, and the gravity of the fall [m/s2]
       logical :: drops = .false.
       real(wp) :: gravity = standard_gravity
@@ -130,7 +128,7 @@ contains
 
    !> Set and judge the measures
    pure subroutine assess(outcome, impact, trajectory, around, sphere, plate)
-      !> Outcome of a separation; on return all measures but `footprint_effect` are set
+      !> Outcome of a separation; on return all measures are set
       type(outcome_t), intent(inout) :: outcome
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(in) :: trajectory
@@ -139,15 +137,21 @@ contains
       class(material_t), intent(in) :: plate
 
       complex(wp) :: modulus, plate_modulus
-      real(wp) :: hertz_radius, frequency, share
+      real(wp) :: hertz_radius, frequency, share, force_radius
 
       frequency = pi/outcome%contact_time
       if (around%drops .and. outcome%cor_sphere >= 0.0_wp) outcome%rebound_height = &
          outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*around%gravity)))
-      outcome%contact_radius = impact%contact_radius(outcome%max_indentation)
+      if (ieee_is_nan(trajectory%contact_radius)) then
+         outcome%contact_radius = impact%contact_radius(outcome%max_indentation)
+         force_radius = impact%contact_radius( &
+            trajectory%indentation_at(outcome%time_of_max_force))
+      else
+         outcome%contact_radius = trajectory%contact_radius
+         force_radius = trajectory%contact_radius
+      end if
       outcome%weight_ratio = impact%mass*around%gravity/outcome%max_force
-      outcome%mean_pressure = outcome%max_force/(pi*impact%contact_radius( &
-         trajectory%indentation_at(outcome%time_of_max_force))**2)
+      outcome%mean_pressure = outcome%max_force/(pi*force_radius**2)
       modulus = impact%modulus%dynamic_modulus(frequency)
       outcome%peak_loss_tangent = aimag(modulus)/real(modulus, wp)
       plate_modulus = 0.0_wp
@@ -211,9 +215,10 @@ contains
       ! neither a rigid plate nor a dashpot has waves
       if (.not. storage > 0.0_wp) return
       wave_number = 0.0_wp
-      if (impact%plate%moves() .and. .not. ieee_is_nan(around%thickness)) then
-         outcome%deflection_ratio = maxval(abs(trajectory%state(col_plate, 0:trajectory%last))) &
-            /around%thickness
+      if ((impact%plate%moves() .or. around%has_body) &
+          .and. .not. ieee_is_nan(around%thickness)) then
+         if (impact%plate%moves()) outcome%deflection_ratio = &
+            maxval(abs(trajectory%state(col_plate, 0:trajectory%last)))/around%thickness
          wave_number = sqrt(frequency/around%thickness*sqrt(12.0_wp*plate%density() &
             /(storage*plate%plane_strain_factor())))
          outcome%plate_wave_number = wave_number*around%thickness
@@ -221,15 +226,15 @@ contains
       end if
       if (.not. plate%density() > 0.0_wp) return
       shear_speed = sqrt(storage/(2.0_wp*(1.0_wp + plate%poisson_ratio())*plate%density()))
-      ! no wave in a layer is much faster
-      if (around%is_layer) then
+      ! no wave in a plate is much faster
+      if (around%has_body) then
          outcome%needed_extent = 0.5_wp*shear_speed*outcome%contact_time
          if (wave_number*outcome%needed_extent > pi) outcome%needed_extent = pi/wave_number
       end if
       if (around%is_sphere .or. around%on_base) return
       ! Zener's alpha; W = alpha int F^2 dt, of a half sine alpha F^2 t0/2, as the part of a motion
       ! that the loss itself slows down
-      if (.not. (impact%plate%moves() .or. around%is_layer .or. ieee_is_nan(around%thickness))) then
+      if (.not. (impact%plate%moves() .or. around%has_body .or. ieee_is_nan(around%thickness))) then
          alpha = sqrt(3.0_wp*plate%density()/(storage*plate%plane_strain_factor())) &
             /(4.0_wp*plate%density()*around%thickness**2)
          outcome%bending_loss = 1.0_wp - exp(-alpha*outcome%max_force/outcome%initial_energy &
@@ -250,9 +255,10 @@ contains
       !> The values [-]
       real(wp) :: values(size(thresholds))
 
-      ! measures of what a layer computes itself
-      character(len=*), parameter :: of_thin_plates(3) = [character(len=17) :: &
-         'plate_wave_number', 'deflection_ratio', 'half_space_loss']
+      ! measures of what a plate of any thickness contains
+      character(len=*), parameter :: contained(4) = [character(len=17) :: &
+         'thickness_ratio', 'plate_wave_number', 'half_space_loss', &
+         'bending_loss']
       real(wp) :: thick, bends
       integer :: i
 
@@ -271,11 +277,10 @@ contains
          merge(none, outcome%thickness_ratio, around%on_base), outcome%plate_wave_number, &
          outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
          outcome%mean_pressure/around%yield_strength, &
-         thick, bends, merge(huge(thick), none, outcome%gains_energy()), &
-         abs(outcome%footprint_effect)]
+         thick, bends, merge(huge(thick), none, outcome%gains_energy())]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
       do i = 1, size(thresholds)
-         if (around%is_layer .and. any(of_thin_plates == thresholds(i)%measure)) values(i) = none
+         if (around%has_body .and. any(contained == thresholds(i)%measure)) values(i) = none
       end do
       ! NaN must not be compared
       if (ieee_is_nan(outcome%sphere_ratio)) return

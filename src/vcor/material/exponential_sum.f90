@@ -21,14 +21,10 @@ module vcor_material_exponential_sum
       real(wp), allocatable :: rates(:)
       !> Viscosity of the dashpot in parallel [Pa s], >= 0
       real(wp) :: viscosity = 0.0_wp
-      !> Pairs of conjugate terms, of which only the real part of the sum counts: one of each,
-      !> moduli [Pa] and rates [1/s], shape (m); not allocated without oscillating terms
-      complex(wp), allocatable :: pair_moduli(:), pair_rates(:)
       !> Estimated largest relative error of the sum as an approximation of a modulus [-]; 0: exact
       real(wp) :: error = 0.0_wp
    contains
       procedure :: scale
-      procedure :: variables
       procedure :: value
       procedure :: integral
       procedure :: complex_modulus
@@ -36,15 +32,6 @@ module vcor_material_exponential_sum
    end type exponential_sum_t
 
 contains
-
-   !> Number of real internal variables: one for each real rate, two for each pair
-   pure function variables(self) result(n)
-      class(exponential_sum_t), intent(in) :: self
-      integer :: n
-
-      n = size(self%rates)
-      if (allocated(self%pair_rates)) n = n + 2*size(self%pair_rates)
-   end function variables
 
    !> Multiply the sum by a factor
    pure subroutine scale(self, factor)
@@ -57,7 +44,7 @@ contains
       self%viscosity = factor*self%viscosity
    end subroutine scale
 
-   !> Value at t > 0, without pairs
+   !> Value at t > 0
    elemental function value(self, t) result(modulus)
       class(exponential_sum_t), intent(in) :: self
       !> Time [s], >= 0
@@ -91,7 +78,7 @@ contains
       value = value + relaxed
    end function integral
 
-   !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s, without pairs
+   !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s
    elemental function complex_modulus(self, s) result(modulus)
       class(exponential_sum_t), intent(in) :: self
       !> Laplace variable [1/s], not at -l_k
@@ -103,7 +90,7 @@ contains
       if (allocated(self%moduli)) modulus = modulus + sum(self%moduli*(s/(s + self%rates)))
    end function complex_modulus
 
-   !> Poles and zeros at s = -x of the complex modulus without pairs,
+   !> Poles and zeros at s = -x of the complex modulus,
    !> -x (viscosity + sum w_j/(d_j - x)), with the equilibrium modulus as a pole d = 0. One zero
    !> lies between two adjacent poles, and with a dashpot one beyond the last
    pure subroutine find_zeros(self, pole, weight, near, offset)

@@ -11,8 +11,8 @@ module vcor_solver_coupled
    use vcor_impact_face, only : face_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
-      col_sphere, col_sphere_velocity, col_time, col_velocity, contact_lasting, &
-      contact_resting, contact_separated, trajectory_t
+      col_sphere, col_sphere_velocity, col_time, contact_lasting, contact_resting, &
+      contact_separated, trajectory_t
    use vcor_kinds, only : unset, wp
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
    use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
@@ -34,8 +34,9 @@ module vcor_solver_coupled
    !> The coupled contact
    type, extends(solver_t) :: coupled_t
       private
-      !> Kernels of earlier impacts
-      type(slot_t) :: slot(slots)
+      !> Kernels of earlier impacts, shape (slots); allocatable, for gfortran 12 does not finalise
+      !> an array of fixed shape
+      type(slot_t), allocatable :: slot(:)
       !> Place of the newest kernel
       integer :: newest = slots
       !> Steps that the impact has taken so far
@@ -101,6 +102,7 @@ contains
       type(solver_settings_t), intent(in) :: settings
 
       self%settings = settings
+      allocate (self%slot(slots))
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('coupled')
    end subroutine new_coupled
 
@@ -491,7 +493,6 @@ contains
                + pair%cor*impact%velocity)
             end(col_sphere) = limit(a%z(a%steps), b%z(b%steps))
             end(col_indentation) = end(col_sphere)
-            end(col_velocity) = end(col_sphere_velocity)
          end associate
       end associate
       call share_impulse(trajectory)
@@ -553,7 +554,6 @@ contains
             *(impact%free_velocity(real(i, wp)*dt) - velocity(i))
       end do
       trajectory%state(col_indentation, :) = trajectory%state(col_sphere, :)
-      trajectory%state(col_velocity, :) = trajectory%state(col_sphere_velocity, :)
    end subroutine fill
 
    !> Share the impulse of each step among its ends. Forces would do worse: they may begin as the

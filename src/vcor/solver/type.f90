@@ -16,7 +16,7 @@ module vcor_solver_type
 
    !> Settings of a solution
    type :: solver_settings_t
-      !> One of auto, ive, direct
+      !> One of auto, ive, direct, coupled
       character(len=longest_name) :: method = 'auto'
       !> Scheme of the direct method: product or adams_bashforth
       character(len=longest_name) :: scheme = 'product'
@@ -60,18 +60,22 @@ module vcor_solver_type
 
 contains
 
-   !> Method in use: `auto` is ive, which falls back to direct on failure, but direct if a scheme
-   !> other than product is requested
-   pure function method_for(method, scheme) result(name)
-      !> Method requested: auto, ive or direct
+   !> Method in use: `auto` is coupled for waves in a plate of any thickness, direct if a scheme
+   !> other than product is requested, and ive otherwise, which falls back to direct on failure
+   pure function method_for(method, scheme, has_body) result(name)
+      !> Method requested: auto, ive, direct or coupled
       character(len=*), intent(in) :: method
       !> Scheme of the direct method requested
       character(len=*), intent(in) :: scheme
-      !> ive or direct
+      !> Whether the impact has waves in a plate of any thickness
+      logical, intent(in) :: has_body
+      !> ive, direct or coupled
       character(len=:), allocatable :: name
 
       name = method
-      if (method == 'auto') name = trim(merge('ive   ', 'direct', scheme == 'product'))
+      if (method /= 'auto') return
+      name = trim(merge('ive   ', 'direct', scheme == 'product'))
+      if (has_body) name = 'coupled'
    end function method_for
 
    !> Accuracy of the coefficient of restitution if none is requested
@@ -81,9 +85,14 @@ contains
       !> Accuracy [-]
       real(wp) :: accuracy
 
-      accuracy = 1.0e-6_wp
-      if (method == 'ive') accuracy = 1.0e-8_wp
-      if (method == 'coupled') accuracy = 1.0e-5_wp
+      select case (method)
+      case ('ive')
+         accuracy = 1.0e-8_wp
+      case ('coupled')
+         accuracy = 1.0e-5_wp
+      case default
+         accuracy = 1.0e-6_wp
+      end select
    end function default_accuracy
 
    !> Solve an impact, and compare its estimated error with the requested accuracy, only here
@@ -100,8 +109,6 @@ contains
       character(len=*), parameter :: advice(2) = [character(len=59) :: &
          'give a larger solver.accuracy', &
          'give a larger solver.accuracy or a shorter solver.time_step']
-      character(len=*), parameter :: asked(2) = [character(len=19) :: &
-         "that a layer allows", 'asked for']
       character(len=*), parameter :: fault(2) = [character(len=45) :: &
          'makes the force fall as the indentation grows', 'keeps the force from returning to zero']
       real(wp) :: ratio, scale
@@ -123,13 +130,11 @@ contains
          if (.not. outcome%is_finite()) then
             call raise(error, error_numerical, 'the numbers of this impact are beyond all that ' &
                //'can be computed')
-         else if (impact%dent_at_once(outcome%max_indentation) < 0.0_wp) then
-            call refuse_footprint(impact, error)
          else if (trajectory%misses_by_far()) then
             call raise(error, error_numerical, 'the estimated error of cor, ' &
                //as_text(max(outcome%cor_error, outcome%cor_sphere_error)) &
-               //', is more than a hundred times the accuracy '//trim(asked(merge(1, 2, &
-               impact%plate%layered())))//', '//as_text(outcome%accuracy) &
+               //', is more than a hundred times the accuracy asked for, ' &
+               //as_text(outcome%accuracy) &
                //': '//trim(advice(merge(1, 2, trajectory%stages > 0))))
          end if
       end if
@@ -144,12 +149,7 @@ contains
          //'term of the Volterra series, about '//as_text(abs(ratio))//' times the first, ' &
          //trim(fault(merge(1, 2, ratio < 0.0_wp)))//': give a solver.volterra_coefficient ' &
          //'nearer to 0')
-      if (impact%plate%layered()) then
-         if (impact%plate%footprint < impact%expected_radius(scale)) &
-            call refuse_footprint(impact, error)
-         if (solver%settings%method /= 'direct') &
-            error%message = error%message//"; use method = 'direct'"
-      else if (light_plate(impact) /= '') then
+      if (light_plate(impact) /= '') then
          error%message = error%message//'; '//trim(light_plate(impact))
       else if (any(solver%settings%method == ['ive   ', 'direct']) &
                .and. solver%settings%scheme == 'product') then
@@ -177,18 +177,6 @@ contains
          //as_text(share/lambda**5)//' of the velocity comes back; take a larger ' &
          //'plate.half_thickness or a lighter sphere'
    end function light_plate
-
-   !> Refuse a footprint that takes away more dent than the contact has: the equations have no
-   !> solution, and what a solver finds because it does not resolve the fastest waves is none
-   subroutine refuse_footprint(impact, error)
-      type(impact_t), intent(in) :: impact
-      !> Error of code `error_numerical`
-      type(error_t), allocatable, intent(out) :: error
-
-      call raise(error, error_numerical, 'the footprint, '//as_text(impact%plate%footprint) &
-         //' m, is smaller than the contact becomes, which has no solution: give a larger ' &
-         //'plate.footprint, or none')
-   end subroutine refuse_footprint
 
    !> A number as text of fixed length: gfortran 12 keeps the length of a deferred-length function
    !> result in static storage, where threads collide

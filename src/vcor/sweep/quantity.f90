@@ -197,8 +197,6 @@ contains
          'share that waves into a half space carry away', outcome%half_space_loss)
       call list%add('bending_loss', 'W_b/KE_0', '1', &
          'share that bending takes, not computed', outcome%bending_loss)
-      call list%add('footprint_effect', 'de', '1', &
-         'change of cor with a 1.25 times larger footprint', outcome%footprint_effect)
       call list%add('peak_loss_tangent', 'tan(d)_p', '1', 'loss tangent at pi/t0', &
          outcome%peak_loss_tangent)
       call list%add('validity', '', '', 'whether the model holds: the worst of the measures', &

@@ -150,7 +150,7 @@ contains
       do i = 1, size(epsilon)
          strikes(i)%plate = sls(modulus, 0.0_wp, epsilon(i)/contact_time)
       end do
-      call law%add_check(strikes, ive_only=.true.)
+      call law%add_check(strikes, 'ive')
       call law%add_row('limit', 5.0_wp/9.0_wp, 2.0_wp/epsilon(3), epsilon(2)**(4.0_wp/3.0_wp), &
          'accuracy over t_c/tau, and the power 4/3 that is left', measure=maxwell_limit)
       call law%add_row('coefficient of (t_c/tau)^(2/3)', -c, &

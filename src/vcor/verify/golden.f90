@@ -95,11 +95,11 @@ contains
 
       call law%begin("Printed numbers of the paper that do not depend on its scheme", &
          'I. Green, The Viscoelastic Coefficient of Restitution; the digits as printed')
-      call law%add_check([strike_t(elastic(15.0e6_wp), waves=waves_relaxing)], ive_only=.true.)
+      call law%add_check([strike_t(elastic(15.0e6_wp), waves=waves_relaxing)], 'ive')
       call law%add_row('elastic limit: cor', 0.79_wp, 0.0_wp, 0.005_wp, half_digit)
       call law%add_row('elastic limit: t0 [ms]', 1.4_wp, 0.0_wp, 0.05_wp, half_digit, &
          'contact_time', 1.0e-3_wp)
-      call law%add_check([strike_t(material(1), waves=waves_relaxing)], ive_only=.true.)
+      call law%add_check([strike_t(material(1), waves=waves_relaxing)], 'ive')
       call law%add_row('SLS: t0 [ms]', 1.34_wp, 0.0_wp, 0.005_wp, half_digit, 'contact_time', &
          1.0e-3_wp)
       call law%add_row('SLS: 2 pi/t0 [rad/s]', 4684.0_wp, 0.0_wp, 0.5_wp, half_digit, &

@@ -82,7 +82,7 @@ contains
       b = halved(1)
       order = 4.0_wp + log((1.0_wp + bend(1)*sqrt(b) + bend(2)*b) &
          /(1.0_wp + bend(1)*sqrt(0.5_wp*b) + bend(2)*0.5_wp*b))/log(2.0_wp)
-      call law%add_check([damped(halved(1)), damped(halved(2))], ive_only=.true.)
+      call law%add_check([damped(halved(1)), damped(halved(2))], 'ive')
       call law%add_row('order of the remainder', order, &
          1.0_wp/(coefficient(8)*halved(2)**4*log(2.0_wp)), b**1.5_wp/log(2.0_wp), &
          'accuracy asked for over the remainder, and the term of relative order b^1.5', &
@@ -106,7 +106,7 @@ contains
          'P. Mueller, T. Poeschel, Phys. Rev. E 84 (2011) 021302; constants recomputed')
       do i = 1, size(b)
          associate (x => sqrt(b(i)))
-            call law%add_check([damped(b(i))], ive_only=.true.)
+            call law%add_check([damped(b(i))], 'ive')
             call law%add_row('cor, b = '//label(i), (1.0_wp + a*x) &
                /(1.0_wp + x*(a + x*(c + x*(a*c + x*0.4_wp*c**2)))), 0.0_wp, own_error(i), &
                "the approximant's own error at this b")

@@ -1,8 +1,9 @@
 !> Laws of the verification table, and the judgement of their rows
 !>
 !> A law (Hertz's, Zener's ...) is a list of checks. A check has impacts, and rows that state the
-!> expected value of a quantity of their outcomes, the tolerance and its reason. Both methods, ive
-!> and direct, solve each check, and its rows are judged for each method. NaN fails.
+!> expected value of a quantity of their outcomes, the tolerance and its reason. Two methods, ive
+!> and direct, solve each check, or the coupled contact does, and its rows are judged for each
+!> method. NaN fails.
 !>
 !> The impacts are of a sphere, rigid unless a law says otherwise, on a plate. The default ones are
 !> those of Green's paper: a ball of 10 mm radius and 7800 kg/m3 on a plate of 20 mm half thickness,
@@ -12,10 +13,11 @@ module vcor_verify_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_series
+   use vcor_impact_face, only : base_free, face_t, new_face
    use vcor_impact_layer_law, only : lay, layer_t, profile_t
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_body, waves_none
+   use vcor_impact_plate, only : new_plate, plate_t, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_response, only : base_bonded
@@ -36,12 +38,12 @@ module vcor_verify_law
    !> the same order
    character(len=*), parameter :: others_follow = 'ten times the accuracy asked of cor'
    !> Methods that solve the impacts
-   character(len=*), parameter :: methods(2) = [character(len=6) :: 'ive', 'direct']
+   character(len=*), parameter :: methods(3) = [character(len=7) :: 'ive', 'direct', 'coupled']
    !> Accuracies that the methods must reach; half of these is requested. For ive half of it is the
    !> smallest value that the solver accepts, and the other half allows for rounding, about 5e-13
    !> per panel. For direct it is the default: below it the error estimate is too small if an
    !> elastic contact ends on a moving plate
-   real(wp), parameter :: accuracies(2) = [2.0e-11_wp, 1.0e-6_wp]
+   real(wp), parameter :: accuracies(3) = [2.0e-11_wp, 1.0e-6_wp, 2.0e-6_wp]
 
    !> Duration of Hertz's impact in units of T, (4/5) B(2/5, 1/2) (5/4)^(2/5) = 3.2180654597190435
    !> [-], independent of the constant that the solvers use
@@ -70,6 +72,8 @@ module vcor_verify_law
       real(wp) :: half_thickness = 0.02_wp
       !> Thickness of a layer that is bonded to a rigid floor [m]; 0: a half space
       real(wp) :: layer = 0.0_wp
+      !> Base of the plate if its face has waves, for the coupled contact
+      integer :: base = base_free
    contains
       procedure :: get_impact
    end type strike_t
@@ -108,8 +112,8 @@ module vcor_verify_law
    !> Impacts and the rows about them; the first `count` rows are in use
    type :: check_t
       type(strike_t), allocatable :: strikes(:)
-      !> Whether ive alone solves them
-      logical :: ive_only = .false.
+      !> First and last method that solve them, in `methods`
+      integer :: first = 1, last = 2
       type(row_t) :: rows(6)
       integer :: count = 0
    end type check_t
@@ -129,7 +133,7 @@ module vcor_verify_law
    !> Judgement of a row for one method
    type :: verdict_t
       character(len=40) :: name = ''
-      character(len=6) :: method = ''
+      character(len=7) :: method = ''
       character(len=100) :: reason = ''
       !> NaN if there is no value
       real(wp) :: expected = 0.0_wp, found = 0.0_wp, deviation = 0.0_wp
@@ -152,16 +156,20 @@ contains
    end subroutine begin
 
    !> Begin a check: the rows that follow are about these impacts
-   subroutine add_check(self, strikes, ive_only)
+   subroutine add_check(self, strikes, method)
       class(law_t), intent(inout) :: self
       type(strike_t), intent(in) :: strikes(:)
-      !> Whether ive alone solves them; absent: both methods do
-      logical, intent(in), optional :: ive_only
+      !> Method that alone solves them; absent: ive and direct do
+      character(len=*), intent(in), optional :: method
 
       self%count = self%count + 1
       allocate (self%checks(self%count)%strikes(size(strikes)))
-      self%checks(self%count)%strikes(:) = strikes
-      if (present(ive_only)) self%checks(self%count)%ive_only = ive_only
+      associate (check => self%checks(self%count))
+         check%strikes(:) = strikes
+         if (.not. present(method)) return
+         check%first = findloc(methods == method, .true., dim=1)
+         check%last = check%first
+      end associate
    end subroutine add_check
 
    !> Append a row to the last check; absent arguments take the defaults of `row_t`
@@ -205,7 +213,7 @@ contains
       allocate (verdicts(0))
       do i = 1, law%count
          associate (check => law%checks(i))
-            do method = 1, merge(1, 2, check%ive_only)
+            do method = check%first, check%last
                call solve_check(check, method, outcomes)
                verdicts = [verdicts, (judge(check%rows(k), method, outcomes), k=1, check%count)]
             end do
@@ -230,9 +238,7 @@ contains
       settings%accuracy = 0.5_wp*accuracies(method)
       allocate (outcomes(0))
       do i = 1, size(check%strikes)
-         call check%strikes(i)%get_impact(impact, error)
-         ! a layer has no accuracy to request: it is solved as accurately as possible
-         if (check%strikes(i)%waves == waves_body) settings%accuracy = 0.0_wp
+         call check%strikes(i)%get_impact(impact, error, settings%method == 'coupled')
          if (.not. allocated(error)) call solve_impact(impact, outcome(i), error, settings)
          if (allocated(error)) return
          if (outcome(i)%status /= contact_separated) return
@@ -243,7 +249,7 @@ contains
    !> Judge a row
    pure function judge(row, method, outcomes) result(verdict)
       type(row_t), intent(in) :: row
-      !> Number of the method: 1 ive, 2 direct
+      !> Number of the method in `methods`
       integer, intent(in) :: method
       !> Outcomes in the order of the impacts; shape (0): an impact had no outcome
       type(outcome_t), intent(in) :: outcomes(:)
@@ -273,16 +279,19 @@ contains
    end function judge
 
    !> Build the impact, its equation of motion
-   subroutine get_impact(self, impact, error)
+   subroutine get_impact(self, impact, error, with_face)
       class(strike_t), intent(in) :: self
       type(impact_t), intent(out) :: impact
       type(error_t), allocatable, intent(out) :: error
+      !> Whether it has the face of a plate with waves
+      logical, intent(in) :: with_face
 
       class(material_t), allocatable :: sphere, body
       type(material_data_t) :: ball
       type(contact_modulus_t) :: modulus
       type(plate_t) :: plate
       type(contact_law_t) :: law
+      type(face_t) :: face
 
       ball = self%sphere
       if (.not. allocated(ball%model)) ball%model = 'rigid'
@@ -293,8 +302,10 @@ contains
          call new_contact_modulus(modulus, sphere, body, .false., error, pair_series)
       if (.not. allocated(error)) &
          call new_plate(plate, body, self%half_thickness, self%waves, error)
+      if (with_face .and. .not. allocated(error)) call new_face(face, body, sphere, self%base, &
+         2.0_wp*self%half_thickness, .true., error)
       if (.not. allocated(error)) call new_impact(impact, self%velocity, self%mass, self%radius, &
-         0.0_wp, modulus, plate, error, law)
+         0.0_wp, modulus, plate, error, law, face=face)
       if (.not. allocated(error) .and. self%layer > 0.0_wp) call lay(impact%law, &
          layer_t(base_bonded, body%poisson_ratio(), 1.0_wp, self%layer), profile_t(), &
          impact%factor, error)

@@ -4,18 +4,21 @@
 !> product integration with dt, dt/2 and dt/4, and the case's own scheme if it is different. The
 !> step dt comes from the contact time, not from the case. The two methods have only the equation of
 !> motion in common, so a result on which they agree is its solution. The judgement is whether they
-!> agree within their stated errors.
+!> agree within their stated errors. The coupled contact has no second method: it is solved at the
+!> accuracy of the case and at a tenth of it.
 module vcor_verify_methods
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
+      ieee_value
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_unread, only : method_of
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : finest_accuracy, wp
    use vcor_numeric_richardson, only : richardson, richardson_t
-   use vcor_solver, only : default_accuracy, method_for, new_solver, solve_impact, &
+   use vcor_solver, only : default_accuracy, new_solver, solve_impact, &
       solver_settings_t, solver_t
    use vcor_sweep_quantity, only : quantity_value, status_name
    implicit none
@@ -48,7 +51,7 @@ module vcor_verify_methods
    !> Compared quantities, cor first
    character(len=*), parameter :: compared_names(7) = [character(len=20) :: 'cor', 'cor_sphere', &
       'contact_time', 'max_indentation', 'max_force', 'residual_indentation', &
-      'hysteresis_energy']
+      'energy_loss']
 
    !> One solution
    type :: attempt_t
@@ -92,8 +95,10 @@ module vcor_verify_methods
    type :: comparison_t
       !> Solutions, by the constants `attempt_*`
       type(attempt_t) :: attempts(attempt_count)
-      !> Whether two methods are compared
+      !> Whether two methods, or two accuracies of the coupled contact, are compared
       logical :: two_methods = .true.
+      !> Whether direct is one of them
+      logical :: has_direct = .true.
       !> Whether the bodies separate in all solutions
       logical :: separated = .false.
       !> Quantities, defined if they separate
@@ -118,6 +123,10 @@ contains
       type(problem_t) :: problem
       character(len=:), allocatable :: method, scheme
 
+      if (method_of(case) == 'coupled') then
+         call compare_coupled(case, impact, comparison, error)
+         return
+      end if
       call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
       associate (first => comparison%attempts(attempt_first), &
@@ -139,7 +148,7 @@ contains
          end if
          if (.not. allocated(error)) call solve_direct(comparison%attempts, settings, impact, error)
          if (allocated(error)) return
-         if (method_for(method, scheme) == 'direct' .and. (comparison%two_methods &
+         if (method_of(case) == 'direct' .and. (comparison%two_methods &
             .or. scheme /= 'product' .or. case%given('solver', 'time_step'))) then
             own%label = 'case: '//scheme
             if (case%given('solver', 'time_step')) &
@@ -152,6 +161,29 @@ contains
       call judge_ends(comparison)
       if (comparison%separated) call judge_numbers(comparison)
    end subroutine compare
+
+   !> Solve the coupled contact of a case at its accuracy and at a tenth of it, and judge the
+   !> results
+   subroutine compare_coupled(case, impact, comparison, error)
+      !> A validated case
+      type(case_t), intent(in) :: case
+      type(impact_t), intent(in) :: impact
+      type(comparison_t), intent(inout) :: comparison
+      !> An error that is not numerical; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(solver_settings_t) :: settings
+
+      comparison%has_direct = .false.
+      settings = settings_of(case, 'coupled')
+      call make_attempt(comparison%attempts(attempt_first), settings, impact, error)
+      settings%accuracy = max(0.1_wp*settings%accuracy, finest_accuracy)
+      if (.not. allocated(error)) call make_attempt(comparison%attempts(attempt_refined), &
+         settings, impact, error, lenient=.true.)
+      if (allocated(error)) return
+      call judge_ends(comparison)
+      if (comparison%separated) call judge_numbers(comparison)
+   end subroutine compare_coupled
 
    !> Make an attempt with given settings
    subroutine make_attempt(attempt, settings, impact, error, lenient)
@@ -204,7 +236,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       ! steps per contact time
-      real(wp) :: per_contact
+      real(wp), parameter :: per_contact = 1000.0_wp
       type(solver_settings_t) :: direct
       integer :: i
 
@@ -212,8 +244,6 @@ contains
       direct%method = 'direct'
       ! zero accuracy: the step is given
       direct%accuracy = 0.0_wp
-      ! each step takes two values of the compliance of a layer
-      per_contact = merge(200.0_wp, 1000.0_wp, impact%plate%layered())
       if (attempts(attempt_first)%separated()) then
          direct%time_step = attempts(attempt_first)%outcome%contact_time/per_contact
       else if (allocated(attempts(attempt_first)%failure)) then
@@ -322,59 +352,74 @@ contains
       integer :: i
 
       do i = 1, size(compared_names)
-         call tabulate(self%compared(i), compared_names(i), self%attempts, self%two_methods)
+         call tabulate(self, i)
       end do
       do i = 1, attempt_count
          if (self%attempts(i)%made) self%attempts(i)%distance &
             = abs(self%compared(:2)%value(i) - self%compared(:2)%best)
       end do
       call judge_errors(self)
-      call judge_distances(self)
+      if (self%has_direct) call judge_distances(self)
       call judge_energies(self)
    end subroutine judge_numbers
 
-   !> Compare one quantity. Its best value is that of the refined internal variables or, with one
-   !> method, the limit of product integration. Its trusted digits follow from the value farthest
-   !> from it, that at the accuracy of the case or the limit of the other method, and from the error
-   !> that the best value states: what both methods have in common, such as the compliance of a
-   !> layer, moves no two values apart
-   pure subroutine tabulate(self, name, attempts, two_methods)
-      type(compared_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      type(attempt_t), intent(in) :: attempts(attempt_count)
-      logical, intent(in) :: two_methods
+   !> Compare one quantity. Its best value is the refined one or, with one method, the limit of
+   !> product integration. Its trusted digits follow from the value farthest from it, that at the
+   !> accuracy of the case or the limit of the other method, and from the error that the best value
+   !> states: what both solutions have in common moves no two values apart
+   pure subroutine tabulate(self, number)
+      type(comparison_t), intent(inout) :: self
+      !> Number of the quantity in `compared_names`
+      integer, intent(in) :: number
 
       ! the internal variables have at most 11 digits
       integer, parameter :: most_digits = 11
-      real(wp) :: uncertainty(2), stated
+      real(wp) :: uncertainty(2)
       integer :: i
 
-      self%name = name
-      self%digits = 0
-      do i = 1, attempt_count
-         self%value(i) = ieee_value(self%value(i), ieee_quiet_nan)
-         if (attempts(i)%made) self%value(i) = quantity_value(attempts(i)%outcome, name)
-      end do
-      self%direct = richardson(self%value(attempt_halved))
-      if (two_methods) then
-         self%best = self%value(attempt_refined)
-         uncertainty(1) = abs(self%direct%limit - self%best)
-         stated = 0.0_wp
-         if (name == 'cor') stated = attempts(attempt_refined)%outcome%cor_error
-         if (name == 'cor_sphere') stated = attempts(attempt_refined)%outcome%cor_sphere_error
-         if (.not. all(ieee_is_finite([uncertainty(1), stated]))) return
-         uncertainty(1) = max(uncertainty(1), stated)
-      else
-         self%best = self%direct%limit
-         uncertainty(1) = self%direct%error
-      end if
-      uncertainty(2) = abs(self%value(attempt_first) - self%best)
-      if (.not. all(ieee_is_finite(uncertainty))) return
-      self%scale = max(abs(self%best), size_of_whole(name, attempts(attempt_first)%outcome))
-      if (.not. self%scale > 0.0_wp) return
-      uncertainty = max(uncertainty/self%scale, tiny(1.0_wp))
-      self%digits = min(most_digits, max(0, floor(-log10(maxval(uncertainty)))))
+      associate (this => self%compared(number), attempts => self%attempts)
+         this%name = compared_names(number)
+         do i = 1, attempt_count
+            this%value(i) = ieee_value(this%value(i), ieee_quiet_nan)
+            if (attempts(i)%made) this%value(i) = quantity_value(attempts(i)%outcome, this%name)
+         end do
+         this%direct = richardson(this%value(attempt_halved))
+         if (self%two_methods) then
+            this%best = this%value(attempt_refined)
+            uncertainty(1) = stated_error(attempts(attempt_refined)%outcome, this%name)
+            if (self%has_direct) uncertainty(1) = larger(uncertainty(1), &
+               abs(this%direct%limit - this%best))
+         else
+            this%best = this%direct%limit
+            uncertainty(1) = this%direct%error
+         end if
+         uncertainty(2) = abs(this%value(attempt_first) - this%best)
+         if (.not. all(ieee_is_finite(uncertainty))) return
+         this%scale = max(abs(this%best), size_of_whole(this%name, attempts(attempt_first)%outcome))
+         if (.not. this%scale > 0.0_wp) return
+         uncertainty = max(uncertainty/this%scale, tiny(1.0_wp))
+         this%digits = min(most_digits, max(0, floor(-log10(maxval(uncertainty)))))
+      end associate
    end subroutine tabulate
+
+   !> Error that a solution states of a quantity; 0 if it states none
+   pure function stated_error(outcome, name) result(error)
+      type(outcome_t), intent(in) :: outcome
+      !> Name of the quantity
+      character(len=*), intent(in) :: name
+      real(wp) :: error
+
+      error = quantity_value(outcome, trim(name)//'_error')
+      if (ieee_is_nan(error)) error = 0.0_wp
+   end function stated_error
+
+   !> The larger of two numbers; NaN if one is
+   pure real(wp) function larger(a, b)
+      real(wp), intent(in) :: a, b
+
+      larger = a + b
+      if (ieee_is_finite(larger)) larger = max(a, b)
+   end function larger
 
    !> Object if an attempt is farther from the best cor and cor_sphere than its stated errors allow.
    !> The case's own scheme, the user's choice, is not judged: the table shows its distance
@@ -479,6 +524,7 @@ contains
                call add_objection(self, 'the energies of '//trim(this%label)//' do not close')
          end associate
       end do
+      if (.not. self%has_direct) return
       direct = richardson(self%attempts(attempt_halved)%imbalance())
       if (.not. within(self%attempts(attempt_halved(3))%imbalance(), &
                        honest_factor*direct%error + allowed_change(self)) .or. &
@@ -524,7 +570,7 @@ contains
          whole = abs(outcome%cor)
       case ('residual_indentation')
          whole = outcome%max_indentation
-      case ('hysteresis_energy')
+      case ('energy_loss')
          whole = outcome%initial_energy
       case default
          whole = 0.0_wp

@@ -38,7 +38,7 @@ module vcor_numeric_radau_settling
       !> Coefficient of y^k in P_j(2 y - 1), shape (k, j)
       real(wp) :: power(0:highest, 0:highest) = 0.0_wp
    contains
-      procedure :: total, total_of_pairs
+      procedure :: total
       procedure, private :: slope_powers
    end type settling_t
 
@@ -127,35 +127,6 @@ contains
       end do
    end function total
 
-   !> Sum of Re(G_k w_k) at the end of the panel
-   pure function total_of_pairs(self, moduli, rates, scale, start, x) result(total)
-      class(settling_t), intent(in) :: self
-      !> One modulus G_k of each pair, shape (pairs)
-      complex(wp), intent(in) :: moduli(:)
-      !> Its rate l_k [1/s], real part > 0, shape (pairs)
-      complex(wp), intent(in) :: rates(:)
-      !> Duration D of the panel [s]
-      real(wp), intent(in) :: scale
-      !> w_k at the start, real and imaginary part, shape (2*pairs)
-      real(wp), intent(in) :: start(:)
-      !> x at the points, dx/dy = 0 at the last one, shape (0:n)
-      real(wp), intent(in) :: x(0:)
-      !> Sum
-      real(wp) :: total
-
-      real(wp) :: g(0:highest)
-      complex(wp) :: moment(0:highest), decay
-      integer :: k
-
-      g = self%slope_powers(x)
-      total = 0.0_wp
-      do k = 1, size(moduli)
-         call find_complex_moments(rates(k)*scale, moment, decay)
-         total = total + real(moduli(k)*(decay*cmplx(start(2*k - 1), start(2*k), wp) &
-            + sum(g(1:)*moment(1:))), wp)
-      end do
-   end function total_of_pairs
-
    !> Coefficients of -dx/dy in powers of y
    pure function slope_powers(self, x) result(g)
       class(settling_t), intent(in) :: self
@@ -226,44 +197,5 @@ contains
          end do
       end if
    end subroutine find_moments
-
-   !> The same moments for a complex a: downwards from series where |a| is small, else upwards from
-   !> m_0 by Laplace's continued fraction of erfc
-   pure subroutine find_complex_moments(a, moment, decay)
-      !> a, real part >= 0
-      complex(wp), intent(in) :: a
-      complex(wp), intent(out) :: moment(0:highest)
-      !> exp(-a)
-      complex(wp), intent(out) :: decay
-
-      ! |a| from which the fraction is used. Both have the terms that 12 digits need: one of the
-      ! series is about a^i/i!, and the fraction converges with the root of number times |a|
-      real(wp), parameter :: smallest = 6.0_wp
-      complex(wp) :: series(2), fraction, root
-      integer :: i, k
-
-      decay = exp(-a)
-      if (abs(a) < smallest) then
-         series = 1.0_wp
-         do i = 10 + ceiling(3.5_wp*abs(a)), 1, -1
-            series = 1.0_wp + 2.0_wp*a/real([highest + 2*i, highest + 1 + 2*i], wp)*series
-         end do
-         moment(highest - 1:) = decay*series/real([highest, highest + 1], wp)
-         do k = highest - 2, 0, -1
-            moment(k) = (decay + 2.0_wp*a*moment(k + 2))/real(k + 1, wp)
-         end do
-      else
-         root = sqrt(a)
-         fraction = root
-         do i = 2 + ceiling(min(300.0_wp/abs(a), 48.0_wp)), 1, -1
-            fraction = root + 0.5_wp*real(i, wp)/fraction
-         end do
-         moment(0) = 0.5_wp*(sqrt(pi) - decay/fraction)/root
-         moment(1) = 0.5_wp*(1.0_wp - decay)/a
-         do k = 0, highest - 2
-            moment(k + 2) = 0.5_wp*(real(k + 1, wp)*moment(k) - decay)/a
-         end do
-      end if
-   end subroutine find_complex_moments
 
 end module vcor_numeric_radau_settling

@@ -16,12 +16,10 @@ contains
    !> State where F = 0 in the step that ends at node n, the first node with F <= 0. In
    !> F = stiffness u - M the indentation is a Hermite cubic and the memory M a parabola: both are
    !> smooth even if s goes to zero together with F
-   pure function end_of_contact(impact, stiffness, recoil, trajectory, n, latest) result(node)
+   pure function end_of_contact(impact, stiffness, trajectory, n, latest) result(node)
       type(impact_t), intent(in) :: impact
       !> Approximate dF/du [N/m^1.5]
       real(wp), intent(in) :: stiffness
-      !> Recoil C(oo) F' in U' of a layer at nodes n - 2, n - 1 and n [m/s]
-      real(wp), intent(in) :: recoil(-1:1)
       type(trajectory_t), intent(in) :: trajectory
       !> First node with F <= 0
       integer, intent(in) :: n
@@ -69,23 +67,15 @@ contains
       node(col_time) = a(col_time) + theta*dt
       node(col_impulse) = hermite(a, b, col_impulse, col_force, theta)
       node(col_sphere) = hermite(a, b, col_sphere, col_sphere_velocity, theta)
-      call complete(impact, recoil, trajectory, n, theta, node)
-      f = (0.5_wp*(memory(1) - memory(-1)) + theta*(memory(1) - 2.0_wp*memory(0) + memory(-1)))/dt
-      associate (instant => impact%plate%instant(), velocity => node(col_velocity))
-         velocity = (velocity + instant*f) &
-            /(1.0_wp + instant*stiffness*impact%law%slope(node(col_indentation)))
-         node(col_plate_velocity) = node(col_sphere_velocity) - velocity
-      end associate
+      call complete(impact, trajectory, n, theta, node)
    end function end_of_contact
 
    !> State where a receding contact ends in the step that ends at node n: at t1 = 0, as t1 is a
    !> smooth function of time. The force, an integral over u' from 0 to t1, goes to zero as t1^n
-   pure function end_of_receding_contact(impact, t1, recoil, trajectory, n) result(node)
+   pure function end_of_receding_contact(impact, t1, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
       !> t1 at nodes n - 2, n - 1 and n in any unit, negative at node n
       real(wp), intent(in) :: t1(-1:1)
-      !> Recoil C(oo) F' in U' of a layer at the same nodes [m/s]
-      real(wp), intent(in) :: recoil(-1:1)
       !> Trajectory, with no force at node n
       type(trajectory_t), intent(in) :: trajectory
       !> First node after the end
@@ -116,14 +106,12 @@ contains
       node(col_impulse) = a(col_impulse) + once*tau*a(col_force)
       node(col_sphere) = a(col_sphere) + tau*(a(col_sphere_velocity) &
          + tau*(0.5_wp*impact%gravity - twice*a(col_force)/impact%mass))
-      call complete(impact, recoil, trajectory, n, theta, node)
+      call complete(impact, trajectory, n, theta, node)
    end function end_of_receding_contact
 
-   !> Complete the state at the end of contact, without the recoil in the plate's velocity there
-   pure subroutine complete(impact, recoil, trajectory, n, theta, node)
+   !> Complete the state at the end of contact
+   pure subroutine complete(impact, trajectory, n, theta, node)
       type(impact_t), intent(in) :: impact
-      !> Recoil C(oo) F' in U' of a layer at nodes n - 2, n - 1 and n [m/s]
-      real(wp), intent(in) :: recoil(-1:1)
       type(trajectory_t), intent(in) :: trajectory
       !> First node after the end
       integer, intent(in) :: n
@@ -142,7 +130,7 @@ contains
          do j = -1, 1
             associate (near => trajectory%state(:, max(n - 1 + j, 0)))
                drift(j) = impact%plate%alpha(near(col_time))*near(col_force) &
-                  + recoil(j) - near(col_plate_velocity)
+                  - near(col_plate_velocity)
             end associate
          end do
          node(col_plate) = hermite(trajectory%state(:, n - 1), trajectory%state(:, n), col_plate, &
@@ -181,10 +169,8 @@ contains
    !>
    !>     int F x dt - sum dI (x_{j-1} + x_j)/2 = dt/6 sum dF dx - dt^2/12 [F x'] + O(dt^4)
    !>
-   !> For x = z' this is the change of the sphere's energy. On a layer U' at the nodes, with its
-   !> term C(oo) F', is of second order only; where there are neighbours it is taken from U instead
-   pure subroutine set_shares(impact, dt, trajectory)
-      type(impact_t), intent(in) :: impact
+   !> For x = z' this is the change of the sphere's energy
+   pure subroutine set_shares(dt, trajectory)
       !> Time step [s]
       real(wp), intent(in) :: dt
       type(trajectory_t), intent(inout) :: trajectory
@@ -214,13 +200,6 @@ contains
          share(0:1) = share(0:1) + rise(0)/12.0_wp*[-1.0_wp, 1.0_wp]
          share(n - 2:n - 1) = share(n - 2:n - 1) &
             + dt/12.0_wp*state(col_force, n - 1)*[1.0_wp, -1.0_wp]
-         if (.not. impact%plate%layered()) return
-         do j = 2, n - 3
-            state(col_plate_velocity, j) = (8.0_wp*(state(col_plate, j + 1) &
-               - state(col_plate, j - 1)) - (state(col_plate, j + 2) - state(col_plate, j - 2))) &
-               /(12.0_wp*dt)
-            state(col_velocity, j) = state(col_sphere_velocity, j) - state(col_plate_velocity, j)
-         end do
       end associate
    end subroutine set_shares
 

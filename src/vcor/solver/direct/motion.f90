@@ -6,17 +6,16 @@
 !>     constant, relaxing   U = alpha I,   U' = alpha F + alpha' I,   Eqs. (2) and (3)
 !>     hereditary           U = alpha I + sum_j W_{n-j} dJ_j,   U' = alpha F + sum_j W_{n-j} dI_j
 !>     frozen               U' = int alpha F' dt = alpha F - D,   D = int alpha' F dt
-!>     body                 U = C(oo) F + sum_j W_{n-j} dI_j,   U' = C(oo) F' + sum_j W_{n-j} dF_j
 !>
 !> I and J are parabolas over each step. The memory psi of the hereditary plate is integrated
-!> exactly, like the kernel of the contact; `layer_weights` gives the W of a layer (body). The rate
+!> exactly, like the kernel of the contact. The rate
 !> of D starts as a power of t that depends on kernel and plate, so the first steps have a rule of
 !> their own. A dashpot's impulse is exactly viscosity*u, so its force is not integrated.
 module vcor_solver_direct_motion
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
-   use vcor_solver_direct_weights, only : layer_weights, memory_weights
+   use vcor_solver_direct_weights, only : memory_weights
    use vcor_tuning, only : near_drift, stiff_step, unresolved_rise
    implicit none
    private
@@ -39,10 +38,8 @@ module vcor_solver_direct_motion
       real(wp) :: indentation(2) = 0.0_wp
       !> s' = velocity(1) - velocity(2)*F [m/s], [m/(N s)]
       real(wp) :: velocity(2) = 0.0_wp
-      !> Plate parameter alpha, for a layer W_0 [m/(N s)]
+      !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha = 0.0_wp
-      !> Recoil of a layer, the term C(oo) F' of U', at the last three nodes, newest last [m/s]
-      real(wp) :: recoil(3) = 0.0_wp
       !> Weight of the newest node in integrals over time [s]
       real(wp) :: weight = 0.0_wp
       !> Impulse [N s] and its integral [N s2], once the node is solved
@@ -68,22 +65,17 @@ module vcor_solver_direct_motion
       real(wp), private :: power = 0.0_wp
       !> Whether alpha' is finite at t = 0
       logical, private :: smooth = .false.
-      !> Weights W_i of the memory of a hereditary plate or a layer
+      !> Weights W_i of the memory of a hereditary plate
       type(convolution_t), private :: memory
-      !> Whether the plate is a layer
-      logical, private :: layered = .false.
-      !> C(oo) of the layer [m/N]
-      real(wp), private :: instant = 0.0_wp
       !> Force at the last node, with the dashpot's [N]
       real(wp), private :: last_force = 0.0_wp
       !> Differences from node to node that the memory weights multiply in U and in U': dJ [N s2]
-      !> and dI [N s], for a layer dI [N s] and dF [N]
+      !> and dI [N s]
       real(wp), allocatable, private :: in_u(:), in_rate(:)
    contains
       procedure :: prepare
       procedure :: advance
       procedure :: respond
-      procedure :: with_recoil
       procedure :: accept
    end type motion_t
 
@@ -102,14 +94,7 @@ contains
       self%frozen = impact%plate%frozen()
       if (self%frozen) call find_power(impact, dt, self%power, self%smooth)
       if (.not. impact%plate%hereditary()) return
-      self%layered = impact%plate%layered()
-      if (self%layered) then
-         self%instant = impact%plate%instant()
-         call self%memory%set(layer_weights(impact%plate, dt, steps))
-         self%alpha = self%memory%newest
-      else
-         call self%memory%set(memory_weights(impact%plate, dt, steps))
-      end if
+      call self%memory%set(memory_weights(impact%plate, dt, steps))
       call lengthen(self%in_u, 1, steps)
       call lengthen(self%in_rate, 1, steps)
    end subroutine prepare
@@ -130,15 +115,12 @@ contains
       real(wp) :: response, last_alpha, rise
 
       self%t = self%dt*real(n, wp)
-      self%recoil(1:2) = self%recoil(2:3)
       last_alpha = self%alpha
       self%rates = [self%alpha_rate, self%rates(1)]
       if (n == 1 .and. self%smooth) self%rates(1) = impact%plate%alpha_rate(0.0_wp)
       self%alpha = impact%plate%alpha(self%t)
       self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
-      if (self%layered) self%alpha = self%memory%newest
-      response = self%alpha
-      if (.not. self%layered) response = response + self%dt*self%memory%newest
+      response = self%alpha + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
       if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > stiff_step) &
          self%rule = self%dt*trapezoid
@@ -196,43 +178,11 @@ contains
          - self%memory%sum_over(n, 1, n - 1, self%in_u)
       self%velocity(1) = self%velocity(1) - self%memory%sum_over(n, 1, n - 1, self%in_rate)
       associate (newest => self%memory%newest)
-         if (self%layered) then
-            self%indentation = self%indentation + [newest*self%impulse, self%instant]
-            self%velocity(1) = self%velocity(1) + newest*self%last_force
-         else
-            self%indentation = self%indentation &
-               - newest*[j - self%second_impulse, -weight*weight]
-            self%velocity = self%velocity - newest*[i - self%impulse, -weight]
-         end if
+         self%indentation = self%indentation &
+            - newest*[j - self%second_impulse, -weight*weight]
+         self%velocity = self%velocity - newest*[i - self%impulse, -weight]
       end associate
    end subroutine respond
-
-   !> Correct the velocity s' at node n for the recoil C(oo) F' of a layer. In
-   !> F' = kappa u' - (kappa u - F)' the bracket is smooth; its rate is taken from a parabola
-   pure subroutine with_recoil(self, n, kappa, slope, du, force, speed)
-      class(motion_t), intent(inout) :: self
-      !> Node
-      integer, intent(in) :: n
-      !> Approximate dF/du [N/m^1.5], 0 where the force does not depend on the newest u
-      real(wp), intent(in) :: kappa
-      !> du/ds at the node [m^0.5]
-      real(wp), intent(in) :: slope
-      !> Differences of u from node to node, up to node n [m^1.5]
-      real(wp), intent(in) :: du(:)
-      !> Force at the node [N]
-      real(wp), intent(in) :: force
-      !> Velocity, on entry without the recoil [m/s]
-      real(wp), intent(inout) :: speed
-
-      real(wp) :: rate, without
-
-      if (.not. abs(self%instant) > 0.0_wp) return
-      rate = 1.5_wp*(force - self%last_force - kappa*du(n))
-      if (n > 1) rate = rate - 0.5_wp*(self%in_rate(n - 1) - kappa*du(n - 1))
-      without = speed
-      speed = (without - self%instant*rate/self%dt)/(1.0_wp + self%instant*kappa*slope)
-      self%recoil(3) = without - speed
-   end subroutine with_recoil
 
    !> Complete all integrals with the force found at node n
    pure subroutine accept(self, n, force, dashpot, drag)
@@ -252,10 +202,6 @@ contains
       if (self%memory%room > 0) then
          self%in_u(n) = self%whole%value - self%second_impulse
          self%in_rate(n) = impulse - self%impulse
-         if (self%layered) then
-            self%in_u(n) = self%in_rate(n)
-            self%in_rate(n) = force + drag - self%last_force
-         end if
       end if
       self%last_force = force + drag
       self%impulse = impulse

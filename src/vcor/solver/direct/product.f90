@@ -29,8 +29,8 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : cancelled, enough_steps, first_steps, &
-      last_part, layer_reach, least_part, most_for_all, most_for_layers, most_work, share_of_force
+   use vcor_tuning, only : cancelled, first_steps, last_part, least_part, most_for_all, most_work, &
+      share_of_force
    implicit none
    private
 
@@ -94,7 +94,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: spare = 8
-      real(wp) :: dt, span, reach, work, cor(3), cor_sphere(3), contact_time(3), depth(3), force(3)
+      real(wp) :: dt, span, work, cor(3), cor_sphere(3), contact_time(3), depth(3), force(3)
       type(richardson_t) :: found
       integer :: level, room
       logical :: crude
@@ -104,20 +104,15 @@ contains
          if (time_step > 0.0_wp) then
             dt = 4.0_wp*time_step
          else
-            ! a fast glassy modulus shortens the steps by a factor of least_part at most, and not at
-            ! all on a layer, where steps are expensive
-            dt = impact%time_scale()
-            if (.not. impact%plate%layered()) dt = max(impact%fast_time_scale(), dt/least_part)
-            dt = impact%law%contact_time/real(first_steps, wp)*dt
+            ! a fast glassy modulus shortens the steps by a factor of least_part at most
+            dt = impact%law%contact_time/real(first_steps, wp) &
+               *max(impact%fast_time_scale(), impact%time_scale()/least_part)
             ! make the end time a whole number of steps
             if (end_time > 0.0_wp) &
-               dt = end_time/real(ceiling(min(end_time/dt, &
-               real(most_steps(impact, .false.), wp))), wp)
+               dt = end_time/real(ceiling(min(end_time/dt, real(most_steps(.false.), wp))), wp)
          end if
 
          level = 0
-         reach = 0.0_wp
-         if (impact%plate%layered() .and. accuracy > 0.0_wp) reach = layer_reach
          span = 5.0_wp*impact%time_scale()
          if (end_time > 0.0_wp) span = min(span, end_time)
          room = nint(span/dt)
@@ -134,7 +129,7 @@ contains
             ! coarse steps can miss the separation: only the given step can show that there is none
             if (trajectory%status /= contact_separated .and. (level == 3 .or. &
                 .not. (time_step > 0.0_wp .or. trajectory%status == contact_resting &
-                .and. 2*trajectory%steps <= most_steps(impact, trajectory%regrows)))) return
+                .and. 2*trajectory%steps <= most_steps(trajectory%regrows)))) return
             associate (final => trajectory%state(:, trajectory%last))
                cor = [cor(2:3), -final(col_velocity)/impact%velocity]
                cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
@@ -143,7 +138,7 @@ contains
             depth = [depth(2:3), trajectory%max_indentation]
             force = [force(2:3), trajectory%max_force]
             if (level >= 3) then
-               trajectory%accuracy = max(accuracy, reach)
+               trajectory%accuracy = accuracy
                found = richardson(cor)
                trajectory%cor_error = found%error
                found = richardson(cor_sphere)
@@ -160,27 +155,18 @@ contains
                   trajectory%cor_sphere_error = max(trajectory%cor_sphere_error, &
                      abs(cor_sphere(3) - cor_sphere(2)))
                end if
-               ! the face of a layer rings, so that the order seen in three runs is accidental
-               if (impact%plate%layered()) then
-                  trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)), &
-                     abs(cor(2) - cor(1)))
-                  trajectory%cor_sphere_error = max(trajectory%cor_sphere_error, &
-                     abs(cor_sphere(3) - cor_sphere(2)))
-               end if
                found = richardson(force)
                trajectory%max_force_error = found%error
                if (time_step > 0.0_wp) return
-               if (trajectory%cor_sphere_error <= accuracy .and. (reach > 0.0_wp &
-                   .and. trajectory%steps > enough_steps &
-                   .or. trajectory%cor_error <= trajectory%accuracy &
-                   .and. found%error <= share_of_force*accuracy*force(3))) then
+               if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= accuracy &
+                   .and. found%error <= share_of_force*accuracy*force(3)) then
                   ! the maxima may be less accurate than cor: extrapolate them
                   trajectory%max_force = found%limit
                   found = richardson(depth)
                   trajectory%max_indentation = found%limit
                   return
                end if
-               if (2*trajectory%steps > most_steps(impact, trajectory%regrows) &
+               if (2*trajectory%steps > most_steps(trajectory%regrows) &
                    .or. 8.0_wp*work > most_work) then
                   if (trajectory%misses_by_far()) call raise(error, error_numerical, 'the ' &
                      //'accuracy asked for is out of reach of product integration: give a ' &
@@ -196,12 +182,11 @@ contains
 
    !> Largest number of steps of a run, half as many if the contact has grown again, as it seldom
    !> ends soon then
-   pure integer function most_steps(impact, regrows)
-      type(impact_t), intent(in) :: impact
+   pure integer function most_steps(regrows)
       !> Whether the contact has grown again
       logical, intent(in) :: regrows
 
-      most_steps = merge(most_for_layers, most_for_all, impact%plate%layered())
+      most_steps = most_for_all
       if (regrows) most_steps = most_steps/2
    end function most_steps
 
@@ -229,7 +214,7 @@ contains
 
       end_time = settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
-      room = min(max(16, expected), most_steps(impact, .false.)) + 1
+      room = min(max(16, expected), most_steps(.false.)) + 1
       run%second_coefficient = settings%second_coefficient
       run%viscosity = impact%kernel_viscosity()
       run%speed = impact%velocity
@@ -246,7 +231,7 @@ contains
       n = 0
       do
          n = n + 1
-         most = most_steps(impact, trajectory%regrows .and. .not. settings%time_step > 0.0_wp)
+         most = most_steps(trajectory%regrows .and. .not. settings%time_step > 0.0_wp)
          if (n > most) then
             if (trajectory%status /= contact_separated) call give_up(trajectory%regrows, error)
             exit
@@ -301,10 +286,10 @@ contains
             ends = run%receding%t1(3) <= 0.0_wp
             crude = crude .or. ends .and. run%receding%t1(2) > last_part*real(turn, wp)
             if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
-               run%motion%recoil, trajectory, n)
+               trajectory, n)
          else if (ends) then
             trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, &
-               run%motion%recoil, trajectory, n, theta)
+               trajectory, n, theta)
          end if
          call trajectory%stop_at_rest(impact, n == most &
             .or. node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp), stopped)
@@ -320,7 +305,7 @@ contains
             exit
          end if
       end do
-      call set_shares(impact, dt, trajectory)
+      call set_shares(dt, trajectory)
       call find_peaks(trajectory)
    end subroutine march
 
@@ -445,7 +430,6 @@ contains
          ! U' contains alpha F, and F the dashpot's force, which is proportional to s'
          run%speed = (v_0 - slowing*run%force - (slowing - alpha)/weight*run%dashpot) &
             /(1.0_wp + alpha*run%viscosity*run%slope)
-         call run%motion%with_recoil(n, run%kernel%newest, run%slope, run%du, run%force, run%speed)
       end associate
    end subroutine step_with_all_the_past
 
@@ -468,7 +452,6 @@ contains
          run%s = indentation(1) - indentation(2)*run%force
          run%slope = impact%law%slope(run%s)
          run%speed = velocity(1) - velocity(2)*run%force
-         call run%motion%with_recoil(n, 0.0_wp, run%slope, run%du, run%force, run%speed)
       end associate
    end subroutine step_with_a_part
 

@@ -3,14 +3,14 @@
 module vcor_solver_direct_weights
    use vcor_impact_plate, only : plate_t
    use vcor_impact_problem, only : impact_t
-   use vcor_kinds, only : pi, wp
+   use vcor_kinds, only : wp
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    use vcor_solver_convolution, only : convolution_t
-   use vcor_tuning, only : aliased, near => near_kernel
+   use vcor_tuning, only : near => near_kernel
    implicit none
    private
 
-   public :: contact_kernel_t, layer_weights, memory_weights, square_weights
+   public :: contact_kernel_t, memory_weights, square_weights
 
    !> Number of parts into which the Newton-Cotes rule divides each step near t = 0
    integer, parameter :: parts = ubound(newton_cotes, 1)
@@ -91,55 +91,6 @@ contains
          (fine(1:) - fine(:near*parts - 1))/dt, sum(share*plate%memory_integral(dt*node))/dt, n, &
          weight, moment)
    end function memory_weights
-
-   !> Weights W_i of a layer, U - C(oo) F = sum_j W_{n-j} (I_j - I_{j-1}), by convolution quadrature
-   !> with the two-stage Radau IIA method of third order: C. Lubich, A. Ostermann, Math. Comp. 60
-   !> (1993) 105. They follow from the power series in zeta of f(s) = s (C(s) - C(oo)) at the matrix
-   !> s = Delta(zeta)/dt, Delta = A^-1 - zeta A^-1 1 e_2^T. Only values of C are needed, at s the
-   !> farther right of the imaginary axis the higher the frequency; only oscillations that a step
-   !> does not resolve are damped. I at the first stage is that of the parabola through the nodes
-   pure function layer_weights(plate, dt, n) result(weight)
-      type(plate_t), intent(in) :: plate
-      !> Time step [s], > 0
-      real(wp), intent(in) :: dt
-      !> Number of weights
-      integer, intent(in) :: n
-      !> Weights [m/(N s)], shape (0:n-1)
-      real(wp) :: weight(0:n - 1)
-
-      ! coefficients of the series by Cauchy's integral, with twice as many points as weights
-      complex(wp) :: turn(0:2*n - 1), zeta, lambda(2), f(2), slope, value
-      real(wp) :: radius
-      integer :: i, k, at
-
-      radius = aliased**(0.5_wp/real(n, wp))
-      turn = exp(cmplx(0.0_wp, pi/real(n, wp)*[(real(k, wp), k=0, 2*n - 1)], wp))
-      weight = 0.0_wp
-      do k = 0, n
-         zeta = radius*turn(k)
-         lambda = 2.0_wp + zeta + [1.0_wp, -1.0_wp]*sqrt(zeta**2 + 10.0_wp*zeta - 2.0_wp)
-         do i = 1, 2
-            f(i) = lambda(i)/dt*plate%compliance(lambda(i)/dt)
-         end do
-         ! second row of f(Delta): second entry, plus the first times the parabola at stage one
-         slope = (f(2) - f(1))/(lambda(2) - lambda(1))
-         value = f(1) + slope*(2.5_wp + 2.0_wp*zeta - lambda(1)) &
-            - 0.5_wp*slope*(2.0_wp + 8.0_wp*zeta - zeta**2)
-         value = value/real(n, wp)
-         if (mod(k, n) == 0) value = 0.5_wp*value
-         at = 0
-         do i = 0, n - 1
-            weight(i) = weight(i) + real(value*conjg(turn(at)), wp)
-            at = modulo(at + k, 2*n)
-         end do
-      end do
-      weight = weight*radius**[(-i, i=0, n - 1)]
-      ! the series is that of the differences W_i - W_{i-1}: those after the last one, which alias
-      ! into the first ones, vanish for a plate that stays where an impulse has moved it
-      do i = 1, n - 1
-         weight(i) = weight(i) + weight(i - 1)
-      end do
-   end function layer_weights
 
    !> Weights and moments from means. With K the integral of k, integration by parts gives the
    !> moment (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it is

@@ -29,7 +29,7 @@ module vcor_solver_ive_contact
    use vcor_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
       first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
-      force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
+      force_share, harmless, inner_allowed, inner_felt, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
       rounding_of_fall, rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
       tolerable, usual_accuracy, usually_better
@@ -52,9 +52,6 @@ module vcor_solver_ive_contact
       real(wp) :: largest_force = 0.0_wp
       !> Contribution of the panel to the error of the motion, and the largest one so far [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
-      !> Difference of the impulse to the companions, added up over earlier panels if each companion
-      !> starts from the solution [N s]
-      real(wp) :: impulse_difference = 0.0_wp
       !> Effect on a rebound of the difference of the two solutions inside the panel, and the
       !> largest one so far [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
@@ -150,8 +147,6 @@ contains
          signed = any(contact%moduli < 0.0_wp)
          ! the noise of moduli of both signs must not be resolved
          if (signed) self%accuracy = max(self%accuracy, error_of_kernel*contact%error)
-         if (impact%plate%layered()) &
-            self%accuracy = max(self%accuracy, layer_accuracy, self%problem%modes%plate%error)
          finer = self%accuracy/usual_accuracy
          self%recedes = impact%law%receding
          self%start%alpha = impact%plate%alpha(0.0_wp)
@@ -159,7 +154,7 @@ contains
          self%velocity = impact%velocity - self%start%alpha*self%start%force
          allocate (self%start%lag(size(contact%rates)), source=0.0_wp)
          if (impact%plate%hereditary()) &
-            allocate (self%start%p(self%problem%modes%plate%variables()), source=0.0_wp)
+            allocate (self%start%p(size(self%problem%modes%plate%rates)), source=0.0_wp)
          self%coarse_start = self%start
 
          relaxes = any(contact%rates*self%time_scale > fast)
@@ -230,9 +225,7 @@ contains
                self%accuracy, self%step, self%panel, self%inverse)
          else if (self%panel%converged .and. trajectory%status /= contact_separated) then
             self%ends = first_without_force(self%panel) > 0
-            ! oscillations in a layer must not prevent the end from being found
-            if (self%ends) call land_on_zero(problem, self%start, &
-               merge(usual_accuracy, self%accuracy, problem%impact%plate%layered()), &
+            if (self%ends) call land_on_zero(problem, self%start, self%accuracy, &
                shallow_end*trajectory%max_indentation, self%step, self%panel, self%inverse)
          end if
          if (.not. self%panel%converged) return
@@ -282,7 +275,7 @@ contains
             max(self%growth, missed_drift(collocator%rule, panel)/self%speed) &
             /(first_drift*self%accuracy)
          self%force_difference = abs(panel%force(n) - coarse%force(n - 1))
-         if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
+         if (self%excess <= 1.0_wp) &
             self%excess = max(self%excess, work_error(self)/(panel_share*self%accuracy))
          force_error = self%force_difference
          allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
@@ -303,9 +296,7 @@ contains
             self%ends_at_branch = panel%indentation(n) < next_to_branch*panel%indentation(0)
             if (self%ends_at_branch) self%excess = usually_better*self%excess
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
-            ! the velocity of a layer's face oscillates: shorter panels do not reduce its error
-            if (.not. impact%plate%layered()) self%excess = max(self%excess, &
-               cor_error/self%accuracy)
+            self%excess = max(self%excess, cor_error/self%accuracy)
          end if
          ! a force that is mere rounding has no error
          force_error = max(0.0_wp, min(force_error, maxval(panel%force(0:n))) &
@@ -520,18 +511,7 @@ contains
 
       associate (problem => self%problem)
          call problem%advance(problem%collocator%rule, self%step, self%panel, self%start)
-         if (problem%impact%plate%layered()) then
-            ! carried on by companions, the difference to the solution would oscillate, and shorter
-            ! panels would not reduce it
-            associate (n => self%panel%stages)
-               self%impulse_difference = self%impulse_difference + self%panel%impulse(n) &
-                  - self%coarse%impulse(n - 1)
-            end associate
-            self%coarse_start = self%start
-         else
-            call problem%advance(problem%collocator%coarse, self%step, self%coarse, &
-               self%coarse_start)
-         end if
+         call problem%advance(problem%collocator%coarse, self%step, self%coarse, self%coarse_start)
       end associate
       if (self%ahead > 0) then
          self%ahead = self%ahead - 1
@@ -599,10 +579,6 @@ contains
             + (time*(self%plate_gains() &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
-         ! near s = 0 F' is zero in both solutions, but at different times
-         if (.not. (self%ends_at_branch .or. self%shallow)) cor_error = cor_error &
-            + (part*abs(panel%recoil(n) - coarse%recoil(n - 1)) &
-            + time*abs(slope_at_end(rule, panel, panel%recoil)))/impact%velocity
       end associate
    end subroutine estimate_errors
 
@@ -632,8 +608,7 @@ contains
       real(wp) :: error
 
       associate (n => self%panel%stages, impact => self%problem%impact)
-         error = max(part*abs(self%impulse_difference + self%panel%impulse(n) &
-            - self%coarse%impulse(n - 1)), &
+         error = max(part*abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)), &
             min(part*self%largest_growth, harmless*self%accuracy)*impact%mass*self%speed)
          ! next to a branch point the last panel is no more accurate than its companion
          if (self%ends_at_branch) error = max(error, self%growth*impact%mass*self%speed)

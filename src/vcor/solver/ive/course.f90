@@ -144,8 +144,7 @@ contains
             *max(1.0_wp/impact%mass, self%alpha_rate())/self%speed &
             + self%growth_of(panel%indentation, coarse%indentation) &
             /(self%speed*self%time_scale)
-         ! oscillations of a layer average out in the motion
-         if (impact%plate%drifts() .and. .not. impact%plate%layered()) &
+         if (impact%plate%drifts()) &
             error = error + self%growth_of(panel%drift, coarse%drift)/self%speed
       end associate
    end function motion_error

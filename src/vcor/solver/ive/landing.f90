@@ -308,7 +308,6 @@ contains
             call impact%plate%alpha_at(panel%time(1:n), panel%alpha(1:n))
          if (impact%plate%drifts()) then
             call move(panel%drift)
-            call move(panel%recoil)
             call move(plate)
          else
             plate(1:n) = panel%alpha(1:n)*panel%impulse(1:n)

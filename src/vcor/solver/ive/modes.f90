@@ -22,8 +22,6 @@ module vcor_solver_ive_modes
       !> Memory of a hereditary plate: weights w_j and rates l_j, viscosity alpha [m/(N s)];
       !> without terms for other plates
       type(exponential_sum_t) :: plate
-      !> Deflection of the plate that follows the force at once [m/N]
-      real(wp) :: instant = 0.0_wp
    end type modes_t
 
 contains
@@ -69,72 +67,9 @@ contains
             end do
          end associate
       end do
-      if (allocated(terms%pair_rates)) call find_pair_response(terms, p, square, lambda, r, c)
       response = r
       past = times(square, c, map%left_one)
    end subroutine find_response
-
-   !> The same for conjugate pairs: 1/(1 + l H) is (1 + conjg(l) H)/n, n = 1 + 2 Re l H + |l|^2 H^2,
-   !> so the real part of w/(1 + l H) is (Re w + Re(w conjg(l)) H)/n
-   pure subroutine find_pair_response(terms, p, square, lambda, r, c)
-      !> The sum
-      type(exponential_sum_t), intent(in) :: terms
-      !> Lags, those of the pairs last, real and imaginary part
-      real(wp), intent(in) :: p(:)
-      !> j^2
-      real(wp), intent(in) :: square(pairs)
-      !> Eigenvalues of H [s]
-      real(wp), intent(in) :: lambda(width)
-      !> Sums, to which the pairs are added
-      real(wp), intent(inout) :: r(width), c(width)
-
-      real(wp), dimension(width) :: squared, inverse, product
-      complex(wp) :: past
-      integer :: k, n
-
-      squared = times(square, lambda, lambda)
-      n = size(terms%rates) + 1
-      do k = 1, size(terms%pair_rates)
-         associate (l => terms%pair_rates(k), w => terms%pair_moduli(k))
-            call invert_pair(l, square, lambda, squared, inverse, product)
-            past = w*cmplx(p(n), p(n + 1), wp)
-            r = r + real(w, wp)*inverse + real(w*conjg(l), wp)*product
-            c = c + real(past, wp)*inverse + real(past*conjg(l), wp)*product
-         end associate
-         n = n + 2
-      end do
-   end subroutine find_pair_response
-
-   !> 1/n and H/n
-   pure subroutine invert_pair(rate, square, lambda, squared, inverse, product)
-      !> l [1/s]
-      complex(wp), intent(in) :: rate
-      !> j^2
-      real(wp), intent(in) :: square(pairs)
-      !> Eigenvalues of H [s], and their squares
-      real(wp), intent(in) :: lambda(width), squared(width)
-      !> 1/n
-      real(wp), intent(out) :: inverse(width)
-      !> H/n [s]
-      real(wp), intent(out) :: product(width)
-
-      real(wp) :: double, size, a, d, norm
-      integer :: m
-
-      double = 2.0_wp*real(rate, wp)
-      size = real(rate, wp)**2 + aimag(rate)**2
-      do m = 1, pairs
-         a = 1.0_wp + double*lambda(m) + size*squared(m)
-         d = double*lambda(pairs + m) + size*squared(pairs + m)
-         norm = 1.0_wp/(a*a - square(m)*(d*d))
-         a = a*norm
-         d = -d*norm
-         inverse(m) = a
-         inverse(pairs + m) = d
-         product(m) = lambda(m)*a + square(m)*lambda(pairs + m)*d
-         product(pairs + m) = lambda(m)*d + lambda(pairs + m)*a
-      end do
-   end subroutine invert_pair
 
    !> Lags at the end of a panel: with p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last stage,
    !> where x is zero at the start
@@ -167,7 +102,6 @@ contains
          end associate
          p(k) = (lag(1) + lag(2)) + (lag(3) + lag(4))
       end do
-      if (allocated(terms%pair_rates)) call advance_pairs(map, lambda, terms, from_x, from_p, p)
 
    contains
 
@@ -185,35 +119,5 @@ contains
          end associate
       end function at_end
    end subroutine advance_lags
-
-   !> The same for conjugate pairs, whose lags are complex
-   pure subroutine advance_pairs(map, lambda, terms, from_x, from_p, p)
-      !> Map of the panel
-      type(panel_map_t), intent(in) :: map
-      !> Eigenvalues of H [s]
-      real(wp), intent(in) :: lambda(width)
-      !> Sum with the rates l
-      type(exponential_sum_t), intent(in) :: terms
-      !> Coefficients of x and of 1 in the last stage
-      real(wp), intent(in) :: from_x(width), from_p(width)
-      !> Lags, those of the pairs last, real and imaginary part
-      real(wp), intent(inout) :: p(:)
-
-      real(wp), dimension(width) :: squared, inverse, product
-      complex(wp) :: value
-      integer :: k, n
-
-      squared = times(map%square, lambda, lambda)
-      n = size(terms%rates) + 1
-      do k = 1, size(terms%pair_rates)
-         associate (l => terms%pair_rates(k))
-            call invert_pair(l, map%square, lambda, squared, inverse, product)
-            value = sum(from_x*inverse) + conjg(l)*sum(from_x*product) + cmplx(p(n), p(n + 1), wp) &
-               *(sum(from_p*inverse) + conjg(l)*sum(from_p*product))
-            p(n:n + 1) = [real(value, wp), aimag(value)]
-         end associate
-         n = n + 2
-      end do
-   end subroutine advance_pairs
 
 end module vcor_solver_ive_modes

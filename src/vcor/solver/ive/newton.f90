@@ -75,7 +75,7 @@ contains
       end do
       panel%converged = newton%converged
       if (.not. panel%converged) return
-      call problem%integrate(rule, equations, panel)
+      call problem%integrate(equations, panel)
       if (.not. equations%closes) return
       call problem%set_end_condition(rule, equations, start, panel)
       call problem%set_end_drift(rule, equations, start, panel)
@@ -190,7 +190,7 @@ contains
          last = max(size, tiny(1.0_wp))
       end do
       if (.not. panel%converged) return
-      call problem%integrate(rule, equations, panel)
+      call problem%integrate(equations, panel)
       if (equations%closes) then
          call problem%set_end_condition(rule, equations, start, panel)
          call problem%set_end_drift(rule, equations, start, panel)
@@ -305,7 +305,7 @@ contains
             panel%t1(n) = 0.0_wp
             call correct(newton, problem, equations, inverse, panel)
             if (newton%failed) return
-            call problem%integrate(rule, equations, panel)
+            call problem%integrate(equations, panel)
             call problem%set_end_condition(rule, equations, start, panel)
             ! N is linear in (1 - theta)^2 near the end
             fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))

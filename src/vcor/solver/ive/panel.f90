@@ -46,10 +46,8 @@ module vcor_solver_ive_panel
       real(wp) :: alpha = 0.0_wp
       !> Deflection U of a frozen plate, or the part due to the memory of a hereditary plate [m]
       real(wp) :: deflection = 0.0_wp
-      !> Drift of a frozen or hereditary plate: alpha F - U', without recoil [m/s]
+      !> Drift of a frozen or hereditary plate: alpha F - U' [m/s]
       real(wp) :: drift = 0.0_wp
-      !> Recoil: velocity of a plate that follows the rate of the force at once [m/s]
-      real(wp) :: recoil = 0.0_wp
       !> Condition N of a receding contact [N/m^0.5]
       real(wp) :: condition = 0.0_wp
       !> Time t1 of a receding contact [s]
@@ -82,10 +80,8 @@ module vcor_solver_ive_panel
       real(wp) :: alpha(0:width)
       !> Deflection U of a frozen plate, or the part due to the memory of a hereditary plate [m]
       real(wp) :: deflection(0:width)
-      !> Drift of a frozen or hereditary plate: alpha F - U', without recoil [m/s]
+      !> Drift of a frozen or hereditary plate: alpha F - U' [m/s]
       real(wp) :: drift(0:width)
-      !> Recoil: velocity of a plate that follows the rate of the force at once [m/s]
-      real(wp) :: recoil(0:width)
       !> Condition N of a receding contact [N/m^0.5]
       real(wp) :: condition(0:width)
       !> Time t1 of a receding contact [s]
@@ -213,7 +209,6 @@ contains
       self%alpha(0) = start%alpha
       self%deflection = start%deflection
       self%drift = start%drift
-      self%recoil = start%recoil
       self%condition(0) = start%condition
       self%t1(0) = start%t1
    end subroutine begin
@@ -255,7 +250,6 @@ contains
          start%alpha = panel%alpha(n)
          start%deflection = panel%deflection(n)
          start%drift = panel%drift(n)
-         start%recoil = panel%recoil(n)
          start%condition = panel%condition(n)
          start%t1 = panel%t1(n)
       end associate

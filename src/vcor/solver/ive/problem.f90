@@ -63,7 +63,6 @@ module vcor_solver_ive_problem
       procedure :: move
       procedure :: find_forces
       procedure :: integrate
-      procedure, private :: follow_force
       procedure :: set_end_condition
       procedure :: set_end_drift
       procedure :: second_term
@@ -96,8 +95,6 @@ module vcor_solver_ive_problem
       real(wp) :: impulsive(width)
       !> Velocity of a hereditary plate per impulse in the panel, from its memory [1/kg]
       real(wp) :: plate(width)
-      !> Deflection of the plate that follows the force at once [m/N], and force at the start [N]
-      real(wp) :: instant, start_force
       !> V^-1 of the plate's velocity from its memory of earlier panels [m/s]
       real(wp) :: past(width)
       !> Plate parameter alpha [m/(N s)]
@@ -211,12 +208,6 @@ contains
          if (e%remembers) e%yield = e%yield &
             + times(map%square, e%lambda, times(map%square, e%lambda, e%plate))
          if (.not. e%varies) e%yield = e%yield + e%alpha(1)*e%lambda
-         e%instant = self%modes%instant
-         e%start_force = start%force
-         if (abs(e%instant) > 0.0_wp) then
-            e%yield = e%yield + constant(e%instant)
-            e%gain = e%gain + e%instant*e%start_force
-         end if
 
          call find_response(contact, start%lag, map, e%lambda, e%stiffness, e%memory)
          if (.not. e%rebounds) then
@@ -432,9 +423,8 @@ contains
 
    !> Forces of a solution, their integrals I = I_n + H F and J = J_n + H I_n + H^2 F, and the
    !> motion if it is not the unknown
-   pure subroutine integrate(self, rule, e, panel)
+   pure subroutine integrate(self, e, panel)
       class(panel_problem_t), intent(in) :: self
-      type(collocation_t), intent(in) :: rule
       type(equations_t), intent(inout) :: e
       type(panel_t), intent(inout) :: panel
 
@@ -457,46 +447,9 @@ contains
             panel%drift(1:) = -apply(map%right, rate)
             panel%deflection(1:) = panel%deflection(0) &
                + apply_product(map%right, map%square, e%lambda, rate)
-            if (abs(e%instant) > 0.0_wp) call self%follow_force(rule, e, panel)
          end if
       end associate
    end subroutine integrate
-
-   !> Deflection of a plate that follows the force at once, and its velocity instant F', the recoil.
-   !> With F = kappa u(s) - M, kappa about dF/du, M is smooth in time where s goes to zero and F is
-   !> not: F' = kappa u' s' - M' with s' = w - instant F'. While the contact recedes F itself is
-   !> smooth, and F' is zero at the end
-   pure subroutine follow_force(self, rule, e, panel)
-      class(panel_problem_t), intent(in) :: self
-      type(collocation_t), intent(in) :: rule
-      type(equations_t), intent(in) :: e
-      type(panel_t), intent(inout) :: panel
-
-      real(wp), dimension(width) :: stiffness, velocity
-      real(wp) :: kappa, memory_rate(0:width)
-      integer :: n
-
-      n = panel%stages
-      panel%deflection(1:) = panel%deflection(1:) + e%instant*(panel%force(1:) - panel%force(0))
-      memory_rate = -panel%force
-      stiffness = 0.0_wp
-      if (.not. e%rebounds) then
-         associate (contact => self%modes%contact)
-            kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*e%elapsed(n)))
-         end associate
-         memory_rate(1:) = memory_rate(1:) + kappa*e%f
-         stiffness = kappa*e%slope
-      end if
-      memory_rate(n + 1:) = 0.0_wp
-      memory_rate = rule%slopes(memory_rate)
-      if (e%closes) n = n - 1
-      memory_rate(1:n) = memory_rate(1:n)/(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
-      velocity = self%impact%free_velocity(panel%time(1:)) - panel%impulse(1:)*e%inverse_mass &
-         - e%alpha*panel%force(1:) + panel%drift(1:)
-      panel%recoil(1:) = e%instant*(stiffness*velocity - memory_rate(1:)) &
-         /(1.0_wp + e%instant*stiffness)
-      panel%recoil(n + 1:) = 0.0_wp
-   end subroutine follow_force
 
    !> Set t1 and the condition at the end of a panel whose map is stationary there. Collocation does
    !> not resolve internal variables that settle in such a panel, and the end has no weight in its
@@ -541,9 +494,6 @@ contains
       associate (n => rule%stages, plate => self%modes%plate)
          panel%drift(n) = -rule%settling%total(plate%moduli, plate%rates, e%scale, start%p, &
             panel%impulse(:n))
-         if (allocated(plate%pair_rates)) panel%drift(n) = panel%drift(n) &
-            - rule%settling%total_of_pairs(plate%pair_moduli, plate%pair_rates, e%scale, &
-            start%p(size(plate%rates) + 1:), panel%impulse(:n))
       end associate
    end subroutine set_end_drift
 
@@ -640,7 +590,7 @@ contains
    end subroutine second_term
 
    !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I; for a frozen or
-   !> hereditary plate, alpha F - drift + recoil
+   !> hereditary plate, alpha F - drift
    pure function plate_velocity(self, panel, j) result(velocity)
       class(panel_problem_t), intent(in) :: self
       type(panel_t), intent(in) :: panel
@@ -651,7 +601,7 @@ contains
 
       velocity = panel%alpha(j)*panel%force(j)
       if (self%impact%plate%drifts()) then
-         velocity = velocity - panel%drift(j) + panel%recoil(j)
+         velocity = velocity - panel%drift(j)
       else
          velocity = velocity + panel%impulse(j) &
             *self%impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
