@@ -538,3 +538,136 @@ def test_the_pages_show_what_the_command_prints(words, text, capsys):
 
 def test_there_are_pages():
     assert {word for words, _ in SHOWN for word in words.split()} >= set(FORMATS) - {"ansys-mpl"}
+
+
+# Blank and continued fields, temperatures in degrees Celsius, other elastic constants
+
+NEO = """*MATERIAL, NAME=gum
+*HYPERELASTIC, NEO HOOKE{}
+ 0.5, {}
+*VISCOELASTIC, TIME=PRONY
+ 0.4, , 0.02
+ 0.3, , 0.0005
+"""
+LOCATED = """MP,EX,1,4200.5, ! E0
+MP,PRXY,1,0.38
+{}
+TB,PRONY,1,1,3,SHEAR
+{}
+"""
+
+
+def test_blank_fields_are_zero(tmp_path):
+    text = "*MATERIAL, NAME=a\n*ELASTIC, MODULI=LONG TERM\n3.0, 0.49\n{}"
+    text += "*VISCOELASTIC,{}TIME=PRONY\n"
+    rows = "0.4, ,0.02\n 0.3,,0.0005,\n"
+    found = back(tmp_path, text.format("", " ") + rows)
+    g = 3.0 / (2 * 1.49) / 0.3
+    assert found.moduli == pytest.approx(
+        [2 * (1 + found.poisson_ratio) * g * part for part in (0.4, 0.3)]
+    )
+    # a line of keywords that goes on, and *TRS before what it shifts
+    trs = "*TRS, DEFINITION=WLF\n 298.15, 8.86, 101.6\n"
+    again = back(tmp_path, text.format(trs, "\n ") + rows)
+    assert again.moduli == found.moduli
+    assert again.shift["reference_temperature"] == 298.15
+
+
+@pytest.mark.parametrize("moduli", [", MODULI=INSTANTANEOUS", ", MODULI=LONG TERM", ""])
+@pytest.mark.parametrize("d1", ["0.1", "", "0."])
+def test_neo_hooke(tmp_path, moduli, d1):
+    """mu = 2 C10 and K = 2/D1, at time zero or in the long term."""
+    found = back(tmp_path, NEO.format(moduli, d1))
+    g, k = 1.0, 2 / float(d1) if d1 == "0.1" else math.inf
+    if "INST" not in moduli:
+        g /= 0.3
+    nu = 0.5 if math.isinf(k) else (3 * k - 2 * g) / (2 * (3 * k + g))
+    assert found.poisson_ratio == pytest.approx(nu)
+    assert found.glassy_modulus == pytest.approx(2 * (1 + nu) * g)
+
+
+@pytest.mark.parametrize(
+    "old, new, says",
+    [
+        ("NEO HOOKE", "MOONEY-RIVLIN", "MOONEY-RIVLIN"),
+        ("NEO HOOKE", "OGDEN, N=2", "OGDEN"),
+        ("NEO HOOKE", "NEO HOOKE, TEST DATA INPUT", "TESTDATAINPUT"),
+        (" 0.5, 0.1", " -0.5, 0.1", "C10 = -0.5"),
+        ("TIME=PRONY", "TIME=CREEP TEST DATA", "TIME=CREEPTESTDATA"),
+        ("TIME=PRONY", "FREQUENCY=TABULAR", "FREQUENCY=TABULAR"),
+        ("NEO HOOKE", "NEO HOOKE, MODULI=TANGENT", "MODULI=TANGENT"),
+    ],
+)
+def test_wrong_options_of_abaqus_are_named(tmp_path, old, new, says):
+    with pytest.raises(vcor.InputError, match=says):
+        back(tmp_path, NEO.format("", "0.1").replace(old, new))
+
+
+@pytest.mark.parametrize(
+    "constants",
+    [
+        "TBDATA,1,0.30,0.02,0.25,0.0005,0.15,1.5e-05",
+        "TBDATA,,0.30,0.02,\nTBDATA,,0.25,0.0005\nTBDATA,, 0.15 , 1.5e-05 ,",
+        "TBTEMP,0\nTBDATA,1,0.30,0.02,\nTBDATA,,0.25,0.0005,,\nTBDATA,5,0.15,1.5e-05",
+    ],
+)
+@pytest.mark.parametrize("elastic", ["", "MPTEMP,1,0\nMPDATA,EX,1,,4200.5,\nMPDATA,PRXY,1,1,0.38"])
+def test_locations_of_ansys(tmp_path, constants, elastic):
+    text = LOCATED.format("", constants)
+    if elastic:
+        text = elastic + "\n" + text[text.index("\nTB") :]
+    found = back(tmp_path, text)
+    assert found.equilibrium_modulus == pytest.approx(1260.15)
+    assert found.moduli == pytest.approx([1260.15, 1050.125, 630.075])
+
+
+@pytest.mark.parametrize(
+    "text, says",
+    [
+        ("TBTEMP,20\nTBDATA,1,0.3,0.02\nTBTEMP,40\nTBDATA,1,0.2,0.02", "several temperatures"),
+        ("TBDATA,9,0.3,0.02", "TBDATA,9"),
+    ],
+)
+def test_what_ansys_has_more_of(tmp_path, text, says):
+    with pytest.raises(vcor.InputError, match=says):
+        back(tmp_path, LOCATED.format("", text))
+    with pytest.raises(vcor.InputError, match="depends on temperature"):
+        back(tmp_path, LOCATED.format("MPDATA,EX,1,1,4200.5,4100.0", "TBDATA,1,0.3,0.02"))
+
+
+SHIFTED = {
+    "abaqus": NEO.format("", "0.1") + "*TRS\n {}, 8.86, 101.6\n",
+    "ansys": LOCATED.format("", "TBDATA,1,0.30,0.02,0.25,0.0005,0.15,1.5e-05")
+    + "TB,SHIFT,1,1,3,WLF\nTBDATA,1,{},8.86,101.6\n",
+}
+
+
+@pytest.mark.parametrize("code", SHIFTED)
+def test_degrees_celsius(tmp_path, code, capsys):
+    """A reference temperature that is no kelvin is taken as degrees Celsius, and that is said."""
+    for given, options in ((25, {}), (25, {"celsius": True}), (298.15, {}), (-10, {})):
+        (tmp_path / "card.inp").write_text(SHIFTED[code].format(given))
+        found = vcor.read_card(tmp_path / "card.inp", code=code, **options)
+        kelvin = given + (273.15 if given < 100 else 0)
+        assert found.shift["reference_temperature"] == pytest.approx(kelvin)
+        said = any("no kelvin: taken as degrees Celsius" in one for one in found.remarks)
+        assert said == (given < 100 and not options)
+    cards.main([str(tmp_path / "card.inp"), "--for", code])
+    assert "taken as degrees Celsius" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("code", ["abaqus", "ansys", "lsdyna", "comsol"])
+def test_cards_in_degrees_celsius(tmp_path, code):
+    """They state it, and are read back."""
+    shift = {"shift": "wlf", "reference_temperature": 298.15, "wlf_c1": 8.0, "wlf_c2": 90.0}
+    made = Card("gum", 0.4, 1e6, (2e6,), (1e-3,), 1100.0, shift)
+    text = made.text(code, celsius=True)
+    assert "temperatures in C" in text and "298.15" not in text
+    found = back(tmp_path, text, code=code)
+    assert found.shift["wlf_c1"] == pytest.approx(8.0)
+    assert found.shift["reference_temperature"] == pytest.approx(298.15)
+    (tmp_path / "k.inp").write_text(made.text(code))
+    with pytest.raises(vcor.InputError, match="kelvin, found --celsius"):
+        vcor.read_card(tmp_path / "k.inp", code=code, celsius=True)
+    with pytest.raises(vcor.UsageError, match="--celsius is for the WLF shift"):
+        Card("gum", 0.4, 1e6, (2e6,), (1e-3,), 1100.0).text(code, celsius=True)

@@ -28,6 +28,8 @@ UNITS = {
 }
 #: Columns of a number in the formats with columns, and the most that Abaqus takes
 _WIDTH = 20
+#: 0 C [K], and the temperature below which one is none in kelvin
+ZERO_C, _COLDEST = 273.15, 150.0
 #: Relative difference of ratios that are meant to be the same, which cards have to a few digits
 _SAME = 1e-4
 _CONSTANTS = {"wlf": ("reference_temperature", "wlf_c1", "wlf_c2"),
@@ -102,16 +104,26 @@ class Card:
             density=None if self.density is None else self.density * mass / length**3,
         )  # fmt: skip
 
-    def text(self, code: str, units: str = "SI") -> str:
-        """Card of a program, one of `FORMATS`, in one of `UNITS`; refused if it cannot hold it."""
+    def text(self, code: str, units: str = "SI", *, celsius: bool = False) -> str:
+        """Card of a program, one of `FORMATS`, in one of `UNITS`; refused if it cannot hold it.
+
+        With `celsius` its temperatures are degrees Celsius.
+        """
         if code not in FORMATS:
             raise UsageError(f"unknown program '{code}', known: {', '.join(FORMATS)}")
         form, card = FORMATS[code], self.within(units)
+        if celsius:
+            if self.shift.get("shift") != "wlf":
+                raise UsageError(f"{self.name}: --celsius is for the WLF shift, "
+                                 "expected it without: temperatures in kelvin")  # fmt: skip
+            shifted = {"reference_temperature": self.constants[0] - ZERO_C}
+            card = dataclasses.replace(card, shift={**card.shift, **shifted})
         if flaw := form.flaw(self):
             raise InputError(f"{self.name}: {flaw}")
         size = 1 / Card("", 0, 1, (), ()).within(units).equilibrium_modulus
         # what is read back is a line each, whatever its length; notes are wrapped
-        head = [f"vcor card for {code} in units {units}: moduli in {size:g} Pa, temperatures in K",
+        head = [f"vcor card for {code} in units {units}: moduli in {size:g} Pa, temperatures in "
+                f"{'C' if celsius else 'K'}",
                 f"material '{self.name}'"]  # fmt: skip
         head += [row for note in self.notes(code) for row in textwrap.wrap(note, 76)]
         return "\n".join([*(form.comment + row for row in head), *form.write(card)]) + "\n"
@@ -218,6 +230,7 @@ class Source:
     modulus: float | None = None
     poisson_ratio: float | None = None
     use_shift: bool = True
+    celsius: bool = False
 
     def __post_init__(self) -> None:
         # no other character ends a line of these programs
@@ -236,7 +249,14 @@ class Source:
             raise UsageError(
                 f"{self.path}: unknown units '{self.units}', known: {', '.join(UNITS)}"
             )
-        self.remarks = [] if made else [f"the card is read in units {self.units}, and kelvin"]
+        #: Scale of the temperatures, C or K; empty: that is not stated
+        self.scale = "C" if self.celsius else ""
+        if made:
+            self.scale = made[3]
+            if self.celsius and self.scale == "K":
+                self.fail(0, "the temperatures of the card are in kelvin, found --celsius")
+        scale = "degrees Celsius" if self.celsius else "kelvin"
+        self.remarks = [] if made else [f"the card is read in units {self.units}, and {scale}"]
 
     def once(self, found: Sequence[tuple[str, int]]) -> None:
         """Refuse names of materials that are there twice: only one of them would be read."""
@@ -248,6 +268,21 @@ class Source:
     def fail(self, line: int, message: str) -> NoReturn:
         """Refuse the card."""
         raise InputError(f"{self.path}:{line}: {message}" if line else f"{self.path}: {message}")
+
+    def kelvin(self, reference: float, zero: float | None = None) -> float:
+        """Reference temperature in K; `zero` is absolute zero in the scale of the card."""
+        if zero is not None:
+            return reference - zero
+        if self.scale == "C":
+            return reference + ZERO_C
+        if not self.scale and reference < _COLDEST:
+            self.remarks = [
+                f"the card is read in units {self.units}",
+                f"its reference temperature, {reference:g}, is no kelvin: taken as degrees Celsius,"
+                f" {reference + ZERO_C:g} K; --celsius states that, --no-shift leaves it out",
+            ]
+            return reference + ZERO_C
+        return reference
 
     def number(self, line: int, text: str, *, sums: bool = False) -> float:
         """A number, 0 where there is none; with `sums` also such as 273-5."""
@@ -343,8 +378,10 @@ class Source:
 
 
 def head_of(text: str) -> re.Match[str] | None:
-    """Program and units that vcor has written in the first line of a card, None if it has not."""
-    return re.match(r"\S{1,2} vcor card for (\S+) in units (\S+): ", text)
+    """Program, units and scale of temperatures in the head of a card, None if vcor wrote none."""
+    return re.match(
+        r"\S{1,2} vcor card for (\S+) in units (\S+): .*, temperatures in ([CK])\s", text
+    )
 
 
 def _ratio(bulk: float, shear: float) -> float:
@@ -411,6 +448,9 @@ def _write_abaqus(card: Card) -> list[str]:
 def _read_abaqus(source: Source) -> Card:
     blocks = []
     for i, head, lines in source.blocks("*", ("**",)):
+        # a line of keywords goes on after a comma at its end
+        while head.endswith(",") and lines:
+            head += lines.pop(0)[1].strip()
         word, *pairs = head.split(",")
         options = dict(re.sub(r"\s", "", pair).upper().partition("=")[::2] for pair in pairs)
         title = re.search(r'(?i)\bname\s*=\s*("[^"]*"|[^,]*)', head)
@@ -426,27 +466,30 @@ def _read_abaqus(source: Source) -> Card:
     found |= {one[0]: one for one in parts[name]}
 
     def rows(keyword: str, *counts: int) -> list[list[float]]:
-        """Numbers of the lines after a keyword."""
+        """Numbers of the lines after a keyword, 0 in a blank field."""
         lines = found[keyword][3] if keyword in found else []
-        cells = [(i, [word for word in text.split(",") if word.strip()]) for i, text in lines]
-        table = [[source.number(i, word) for word in row] for i, row in cells if row]
+        cells = [(i, text.rstrip(", ").split(",")) for i, text in lines if text.strip(", ")]
+        table = [[source.number(i, word) for word in row] for i, row in cells]
         if not table or any(len(row) not in counts for row in table):
             source.fail(found.get(keyword, parts[name][0])[1],
                         f"expected *{keyword} with lines of {counts[0]} numbers")  # fmt: skip
         return table
 
-    constants, terms = rows("ELASTIC", 2, 3), rows("VISCOELASTIC", 3, 4)
-    _, line, options, *_ = found["ELASTIC"]
-    if not options.get("TYPE", "ISO").startswith("ISO") or len(constants) > 1:
-        source.fail(line, "expected isotropic constants at one temperature")
-    long_term = not options.get("MODULI", "LONG").startswith("INST")
-    source.ratio(line, constants[0][1])
+    kind = "HYPERELASTIC" if "ELASTIC" not in found and "HYPERELASTIC" in found else "ELASTIC"
+    constants = rows(kind, *((1, 2, 3) if kind == "HYPERELASTIC" else (2, 3)))
+    terms = rows("VISCOELASTIC", 3, 4)
+    _, line, options, *_ = found[kind]
+    start, ratio = _abaqus_constants(source, kind, line, options, constants)
+    moduli = options.get("MODULI", "LONGTERM")
+    if moduli not in ("LONGTERM", "INSTANTANEOUS"):
+        source.fail(line, f"found MODULI={moduli}, expected LONG TERM or INSTANTANEOUS")
     _, line, options, *_ = found["VISCOELASTIC"]
     if options.get("TIME") != "PRONY":
-        source.fail(line, "expected *VISCOELASTIC, TIME=PRONY")
-    (modulus, ratio), part = constants[0][:2], 1 - math.fsum(row[0] for row in terms)
-    start = modulus / (2 * (1 + ratio))
-    if long_term:
+        given = ", ".join("=".join(filter(None, pair)) for pair in options.items())
+        source.fail(line, f"found *VISCOELASTIC, {given or 'nothing'}; expected TIME=PRONY with "
+                          "ratios and times")  # fmt: skip
+    part = 1 - math.fsum(row[0] for row in terms)
+    if moduli == "LONGTERM":
         if not 0 < part < 1:
             source.fail(line, f"found ratios of {1 - part:g} in all, expected less than 1")
         ratio = ratio if any(row[1] for row in terms) else _ratio_after(ratio, 1 / part)
@@ -454,20 +497,46 @@ def _read_abaqus(source: Source) -> Card:
     shift = {}
     if "TRS" in found and source.use_shift:
         _, i, options, *_ = found["TRS"]
-        given = found["PHYSICAL CONSTANTS"][2] if "PHYSICAL CONSTANTS" in found else {}
+        physical = found["PHYSICAL CONSTANTS"][2] if "PHYSICAL CONSTANTS" in found else {}
         law, gas = options.get("DEFINITION", "WLF"), _gas(source.units)
         if law not in ("WLF", "ARRHENIUS"):
             source.fail(i, f"found DEFINITION={law}, expected WLF or ARRHENIUS; or --no-shift")
         reference, *values = rows("TRS", 3 if law == "WLF" else 2)[0]
+        stated = physical.get("ABSOLUTEZERO")
         if law == "ARRHENIUS":
-            values[0] *= gas / source.number(i, given.get("UNIVERSALGAS", repr(gas)))
-        zero = source.number(i, given.get("ABSOLUTEZERO", "0"))
-        shift = _law(law.lower(), reference - zero, *values)
+            values[0] *= gas / source.number(i, physical.get("UNIVERSALGAS", repr(gas)))
+        zero = None if stated is None else source.number(i, stated)
+        shift = _law(law.lower(), source.kelvin(reference, zero), *values)
     return source.card(
         line, [(start * row[0], row[2]) for row in terms], start * part,
         [(row[1], row[2]) for row in terms], ratio, shift=shift, name=name,
         density=rows("DENSITY", 1, 2)[0][0] if "DENSITY" in found else None,
     )  # fmt: skip
+
+
+def _abaqus_constants(
+    source: Source, kind: str, line: int, options: Mapping[str, str], rows: list[list[float]]
+) -> tuple[float, float]:
+    """Shear modulus and Poisson's ratio of *ELASTIC, or of *HYPERELASTIC, NEO HOOKE."""
+    if len(rows) > 1:
+        source.fail(line, f"found *{kind} at {len(rows)} temperatures, expected one")
+    if kind == "ELASTIC":
+        if not (given := options.get("TYPE", "ISOTROPIC")).startswith("ISO"):
+            source.fail(line, f"found *ELASTIC, TYPE={given}, expected ISOTROPIC")
+        modulus, ratio = rows[0][:2]
+        source.ratio(line, ratio)
+        return modulus / (2 * (1 + ratio)), ratio
+    form = ", ".join(one for one in options if one not in ("MODULI", "N"))
+    neo = form == "NEOHOOKE" or form == "REDUCEDPOLYNOMIAL" and options.get("N", "1") == "1"
+    if not neo:
+        source.fail(line, f"found *HYPERELASTIC, {form or 'POLYNOMIAL'}, expected NEO HOOKE with "
+                          "C10 and D1, or *ELASTIC")  # fmt: skip
+    c10, d1 = [*rows[0], 0.0][:2]
+    if not (c10 > 0 and d1 >= 0):
+        source.fail(line, f"found C10 = {c10:g} and D1 = {d1:g}, expected C10 > 0 and D1 >= 0")
+    if d1 == 0:
+        source.remarks.append("D1 = 0: the material is incompressible, Poisson's ratio 0.5")
+    return 2 * c10, _ratio(2 / d1, 2 * c10) if d1 else 0.5
 
 
 # ---------------------------------------------------------------------------------------- Ansys
@@ -499,28 +568,43 @@ def _read_ansys(source: Source) -> Card:
     properties: dict[tuple[str, str], Line] = {}
     tables: dict[tuple[str, str], tuple[int, float, list[str]]] = {}
     current: list[str] = []
+    at = 0
     commands = [(i, one) for i, text in source.lines for one in text.split("!")[0].split("$")]
     for i, command in commands:
         words = [word.strip() for word in command.split(",")] + [""] * 6
-        what, label, number = words[0].upper(), words[1].upper()[:4], words[2]
-        if what == "MP":
-            properties[number, label] = i, words[3]
+        what, label, number = words[0].upper(), words[1].upper()[:4], words[2] or "1"
+        if what in ("MP", "MPDATA"):
+            # MPDATA has the location of its first number before it
+            value, *more = words[3:] if what == "MP" else words[4:]
+            if any(source.number(i, word) for word in more):
+                source.fail(i, f"found {label} that depends on temperature, expected a constant")
+            properties[number, label] = i, value
+        elif what == "TBTEMP":
+            if any(current):
+                source.fail(i, "found constants at several temperatures, expected one")
+            at = 0
         elif what == "TB":
-            current = []
+            current, at = [], 0
             if label in ("PRON", "SHIF"):
                 kind = words[5].upper()[:4] if label == "PRON" else f"SHIFT {words[5].upper()}"
                 tables[number, kind] = i, source.number(i, words[4]), current
         elif what == "TBDATA":
-            first = int(source.number(i, label)) - 1
+            # without a location it goes on after the last one
+            first = int(source.number(i, label)) - 1 if label else at
             if not 0 <= first <= len(current):
                 source.fail(i, f"found TBDATA,{label}, expected {len(current) + 1}")
-            current[first:] = [word for word in words[2:] if word]
+            given = words[2:]
+            while given and not given[-1]:
+                given.pop()
+            current[first : first + len(given)] = given
+            at = first + len(given)
     name = source.choose([number for number, kind in tables if kind == "SHEA"])
 
     def terms(kind: str) -> Terms:
         """Ratios and times."""
         at, n, texts = tables.get((name, kind), (0, 0.0, []))
         numbers = [source.number(at, text) for text in texts]
+        n = n or len(numbers) / 2
         if len(numbers) != 2 * n:
             source.fail(at, f"found {len(numbers)} constants of TB,PRONY, expected {2 * n:g}")
         return list(zip(numbers[::2], numbers[1::2], strict=True))
@@ -541,6 +625,7 @@ def _read_ansys(source: Source) -> Card:
             if len(values) != (3 if wlf else 2):
                 source.fail(line, f"found {len(values)} constants of TB,SHIFT")
             values[1] *= 1 if wlf else _gas(source.units)
+            values[0] = source.kelvin(values[0])
             shift = _law("wlf" if wlf else "arrhenius", *values)
             shift |= {} if wlf else {"remark": _TN}
     modulus, ratio = source.elastic(constant("EX"), constant("PRXY", "NUXY"))
@@ -623,6 +708,8 @@ def _read_lsdyna(source: Source) -> Card:
         source.fail(lines[0][0], f"found bulk = {bulk:g}, expected a number > 0")
     _, _, reference, a, b = rest
     shift = {}
+    if a:
+        reference = source.kelvin(reference)
     if a and b:
         shift = _law("wlf", reference, abs(a) / math.log(10), b) | {"remark": _DYNA_WLF}
     elif a:
@@ -765,7 +852,8 @@ def _read_comsol(source: Source) -> Card:
         line, law = given["shift"]
         if not set(_CONSTANTS.get(law, [law])) <= set(values):
             source.fail(line, f"found shift = {law}, expected wlf or arrhenius with its constants")
-        shift = _law(law, *(values[key] for key in _CONSTANTS[law]))
+        reference, *constants = (values[key] for key in _CONSTANTS[law])
+        shift = _law(law, source.kelvin(reference), *constants)
     return source.card(rows[0][0] if rows else 0, shear, rest, [], ratio,
                        density=values.get("density"), shift=shift)  # fmt: skip
 

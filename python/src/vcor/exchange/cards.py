@@ -199,6 +199,7 @@ def read_card(
     modulus: float | None = None,
     poisson_ratio: float | None = None,
     use_shift: bool = True,
+    celsius: bool = False,
 ) -> Card:
     """Read the card of a finite element program.
 
@@ -218,6 +219,8 @@ def read_card(
         Poisson's ratio in place of that of the card, at the same shear moduli.
     use_shift
         Whether to read the shift with temperature.
+    celsius
+        Whether the temperatures of the card are degrees Celsius.
 
     Returns
     -------
@@ -238,7 +241,8 @@ def read_card(
         if code is None:
             raise InputError(f"{os.fspath(path)}: found no card, {expected}")
         raise UsageError(f"unknown program '{code}', {expected}")
-    source = Source(os.fspath(path), text, material, units or "", modulus, poisson_ratio, use_shift)
+    source = Source(os.fspath(path), text, material, units or "", modulus, poisson_ratio, use_shift,
+                    celsius)  # fmt: skip
     try:
         made = FORMATS[code].read(source)
     except InputError:
@@ -283,6 +287,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--for", dest="code", choices=FORMATS, help="the program")
     add("--output", metavar="FILE", help="file to be written; default: print")
     add("--units", choices=UNITS, help="units of the card; default: SI")
+    add("--celsius", action="store_true", help="temperatures of the card are degrees Celsius")
     add("--poisson-ratio", type=float, metavar="NU", help="another Poisson's ratio")
     add("--no-shift", action="store_true", help="without the shift with temperature")
     what = "times [s] where a sum of exponentials follows the model; default: those of its data, "
@@ -308,12 +313,14 @@ def _work(options: argparse.Namespace) -> None:
             accuracy=options.accuracy, terms=min(FORMATS[options.code].terms, _MOST_TERMS) - 1 or 1,
             use_shift=not options.no_shift,
         )  # fmt: skip
-        text, notes = made.text(options.code, options.units or "SI"), made.notes(options.code)
+        text = made.text(options.code, options.units or "SI", celsius=options.celsius)
+        notes = made.notes(options.code)
     else:
         _refuse(options, "writing a card", band=None, accuracy=_ACCURACY)
         made = read_card(
             options.file, code=options.code, material=options.material, units=options.units,
             modulus=options.modulus, poisson_ratio=nu, use_shift=not options.no_shift,
+            celsius=options.celsius,
         )  # fmt: skip
         text, notes = str(made), list(made.remarks)
     if options.output:
