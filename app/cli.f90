@@ -4,11 +4,7 @@ module vcor_app_cli
    use vcor_app_commands, only : commands, missing_package, options_of, package_names
    use vcor_number, only : read_real
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_fit, only : estimate_t
-   use vcor_io_header, only : frequency_units, modulus_units, time_units
-   use vcor_io_sample_file, only : reading_t
    use vcor_kinds, only : wp
-   use vcor_material, only : identifiable_models
    use vcor_material_moduli, only : time_range_t
    use vcor_io_seal, only : crc32
    use vcor_sweep_part, only : most_threads
@@ -45,24 +41,8 @@ module vcor_app_cli
       type(time_range_t) :: range
       !> Whether to print only requested numbers
       logical :: quiet = .false.
-      !> File for the JSON document of fit; allocated if help prints JSON
-      character(len=:), allocatable :: json
-      !> Model to fit
-      character(len=:), allocatable :: model
-      !> Terms of a Prony series; 0: as many as the data support
-      integer :: terms = 0
-      !> Fixed parameters of a fit, shape (n)
-      type(estimate_t), allocatable :: fixed(:)
-      !> Options about a file of moduli
-      type(reading_t) :: reading
-      !> Density of a fitted material [kg/m3]; 0: unknown
-      real(wp) :: density = 0.0_wp
-      !> Name of a fitted material; unallocated: from the name of the file
-      character(len=:), allocatable :: name
-      !> Case, with or without a material, to sample instead of data; unallocated: none
-      character(len=:), allocatable :: source
-      !> Whether to sample storage and loss modulus
-      logical :: dynamic = .false.
+      !> Whether help prints JSON
+      logical :: json = .false.
    end type request_t
 
 contains
@@ -127,11 +107,9 @@ contains
       integer :: i, mark
       logical :: plain, flag
 
-      allocate (request%files(0), request%settings(0), request%names(0), request%fixed(0))
-      allocate (request%reading%units(0))
-      request%model = 'prony'
+      allocate (request%files(0), request%settings(0), request%names(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
+         call raise(error, error_usage, 'no command; known: run, merge, check, material, ' &
             //'verify, help (vcor help says more)')
          return
       end if
@@ -203,7 +181,7 @@ contains
          value = words(i)%text(merge(len(words(i)%text), mark, flag) + 1:)
          if (.not. flag .and. len_trim(value) == 0) then
             call raise(error, error_usage, 'option '//name//' needs a value')
-         else if (all(name /= ['--set  ', '--fix  ', '--units']) .and. control_in(value) /= '') then
+         else if (name /= '--set' .and. control_in(value) /= '') then
             call raise(error, error_usage, name//": found "//control_in(value)//" in '" &
                //printable(value)//"', expected a text that can be read on one line")
          else
@@ -223,8 +201,7 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer, parameter :: most_points = 100000, most_terms = 60
-      character(len=*), parameter :: expected = 'a number in (-1, 0.5]'
+      integer, parameter :: most_points = 100000
 
       select case (option)
       case ('--quiet')
@@ -247,37 +224,9 @@ contains
          call read_positive(option, value, request%range%last, error)
       case ('--print')
          call add_names(value, request)
-      case ('--json')
-         call read_name(option, value, request%json, error)
-      case ('--shear')
-         request%reading%shear = .true.
-      case ('--dynamic')
-         request%dynamic = .true.
-      case ('--model')
-         request%model = trim(adjustl(value))
-         if (.not. contains_word(identifiable_models, request%model)) call raise(error, &
-            error_usage, "--model: found '"//printable(request%model)//"', expected one of " &
-            //join_words(identifiable_models)//'; ' &
-            //suggestion(request%model, identifiable_models))
-      case ('--terms')
-         call read_whole(option, value, 1, most_terms, request%terms, error)
-      case ('--fix')
-         call add_fixed(value, request, error)
-      case ('--units')
-         call take_units(trim(adjustl(value)), request%reading, error)
-      case ('--poisson-ratio')
-         call read_number(option, value, expected, request%reading%poisson_ratio, error)
-         if (allocated(error)) return
-         if (.not. (request%reading%poisson_ratio > -1.0_wp .and. request%reading%poisson_ratio &
-                    <= 0.5_wp)) call raise(error, error_usage, option//': found ' &
-            //printable(value)//', expected '//expected)
-      case ('--density')
-         call read_positive(option, value, request%density, error)
-      case ('--name')
-         request%name = trim(adjustl(value))
       case default
-         ! --from-model
-         request%source = value
+         ! --json
+         request%json = .true.
       end select
    end subroutine apply
 
@@ -293,72 +242,6 @@ contains
          //printable(value)//"' "//name_flaw(value)//', expected another name')
    end subroutine read_name
 
-   !> Read a parameter of --fix
-   subroutine add_fixed(value, request, error)
-      !> KEY=VALUE
-      character(len=*), intent(in) :: value
-      type(request_t), intent(inout) :: request
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(estimate_t) :: parameter
-      integer :: mark
-
-      mark = index(value, '=')
-      if (mark < 2) then
-         call raise(error, error_usage, "--fix: found '"//printable(value) &
-            //"', expected KEY=VALUE, such as --fix exponent=0.5")
-         return
-      end if
-      parameter%name = adjustl(value(:mark - 1))
-      call read_number('--fix '//printable(value(:mark - 1)), value(mark + 1:), 'a number', &
-         parameter%value, error)
-      request%fixed = [request%fixed, parameter]
-   end subroutine add_fixed
-
-   !> Read the units of --units: time and modulus, or frequency and one or two moduli
-   subroutine take_units(list, reading, error)
-      !> Units separated by commas
-      character(len=*), intent(in) :: list
-      !> Options about the file
-      type(reading_t), intent(inout) :: reading
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=len(reading%units)) :: words(3)
-      integer :: first, last, n, i
-      logical :: good
-
-      n = 0
-      first = 1
-      words = ''
-      do while (first <= len(list) + 1)
-         last = first + index(list(first:)//',', ',') - 2
-         n = n + 1
-         if (n <= size(words)) words(n) = adjustl(list(first:last))
-         first = last + 2
-      end do
-      good = n == 2 .or. n == 3
-      do i = 2, min(n, 3)
-         good = good .and. contains_word(modulus_units, words(i))
-      end do
-      if (contains_word(time_units, words(1))) then
-         good = good .and. n == 2
-      else
-         good = good .and. contains_word(frequency_units, words(1))
-         if (n == 2) words(3) = words(2)
-         n = 3
-      end if
-      if (good) then
-         reading%units = words(:n)
-      else
-         call raise(error, error_usage, "--units: found '"//printable(list)//"', expected " &
-            //'TIME,MODULUS or FREQUENCY,MODULUS, such as s,MPa or Hz,MPa; units of time are ' &
-            //join_words(time_units)//', of frequency '//join_words(frequency_units) &
-            //', of modulus '//join_words(modulus_units))
-      end if
-   end subroutine take_units
-
    !> Check that the parts of a request are compatible
    subroutine check_request(request, error)
       type(request_t), intent(in) :: request
@@ -367,7 +250,7 @@ contains
 
       if (size(request%files) == 0) then
          select case (request%command)
-         case ('help', 'fit')
+         case ('help')
             continue
          case ('merge')
             call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
@@ -383,7 +266,7 @@ contains
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
-      if (request%command == 'help' .and. allocated(request%json) .and. size(request%files) > 0) &
+      if (request%json .and. size(request%files) > 0) &
          call raise(error, error_usage, "help --json takes no topic, found '" &
          //printable(request%files(1)%text)//"'")
    end subroutine check_request

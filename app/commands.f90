@@ -105,59 +105,6 @@ module vcor_app_commands
       entry_t("--quiet", "print nothing"), &
       entry_t("example", "vcor material examples/paper/sls.nml --from 1e-6 --to 10"), &
       !
-      entry_t("command", "fit"), &
-      entry_t("usage", "vcor fit DATA [options]"), &
-      entry_t("usage", "vcor fit --from-model CASE.nml[:MATERIAL] [options]"), &
-      entry_t("summary", "identify a material from measured moduli"), &
-      entry_t("", "Fits a material to a file of columns: time and relaxation modulus, or " &
-      //"frequency, storage modulus and loss modulus (or loss tangent). Prints the parameters " &
-      //"with standard errors, the misfit, the band of the data, and a &material group to paste " &
-      //"into a case. DATA may be - for standard input."), &
-      entry_t("", "A header (t,E or f,E_stor,E_loss ...) names the columns. Units come from the " &
-      //"header, from a second line of units, or from `--units`; a header without units means s " &
-      //"and Pa. Other lines before the header are skipped. Without a header, two columns are s " &
-      //"and Pa, three are rad/s, Pa and Pa."), &
-      entry_t("", "With `--from-model`, a material of a case is sampled in place of data: the " &
-      //"named one, or that of the plate. The impact of the case is then solved with the " &
-      //"material and with the fit."), &
-      entry_t("--model NAME", "prony (default), sls, power_law, cerf or mittag_leffler"), &
-      entry_t("--terms N", "terms of a Prony series; default: as many as the data support, or " &
-      //"until the largest misfit is below 0.05 %"), &
-      entry_t("--fix KEY=VALUE", "fix a parameter, in SI units; may be repeated"), &
-      entry_t("--units LIST", "units of the columns, such as s,MPa or Hz,MPa or rad/s,Pa"), &
-      entry_t("--shear", "the data are shear moduli G: E = 2 (1 + nu) G"), &
-      entry_t("--poisson-ratio NU", "Poisson's ratio of the material; default 0.5; required with " &
-      //"`--shear`"), &
-      entry_t("--density RHO", "density of the material [kg/m3]"), &
-      entry_t("--name NAME", "name of the material; default: the name of the data file"), &
-      entry_t("--from-model CASE.nml", "sample a material of this case in place of data"), &
-      entry_t("--dynamic", "with `--from-model`: sample storage and loss modulus, at the " &
-      //"reciprocals of the times"), &
-      entry_t("--set GROUP.KEY=VALUE", "with `--from-model`: replace a value of the case"), &
-      entry_t("--output PATH", "write the group to PATH if it ends in .nml, otherwise to " &
-      //"DATA_fit.nml in the folder PATH, which is created if it does not exist"), &
-      entry_t("--json FILE", "write values, standard errors, covariance, misfit, band of the " &
-      //"data and the group as JSON, such as `vcor uncertainty --covariance` reads"), &
-      entry_t("--from T", "with `--from-model`: first time [s]; default: 1e-5 contact times, " &
-      //"rounded to a whole decade"), &
-      entry_t("--to T", "with `--from-model`: last time [s]; default: 10 contact times, rounded " &
-      //"to a whole decade"), &
-      entry_t("--points N", "with `--from-model`: number of samples; default: 50 per decade"), &
-      entry_t("--quiet", "print nothing"), &
-      entry_t("", "The keys `valid_from` and `valid_to` of the group hold the band of the data. " &
-      //"`vcor run` warns if holding the modulus constant outside this band changes the cor of " &
-      //"an impact by more than 1e-4."), &
-      entry_t("", "A standard error is one third of the distance to the further end of the " &
-      //"interval of three standard errors. A parameter at its bound has a standard error too: " &
-      //"0 +- 1E+5 may be 1E+5, and the errors of the other parameters allow for it."), &
-      entry_t("", "A note is printed if misfits above 0.5 % do not look like noise: the model " &
-      //"does not follow the data. If the modulus still falls at the end of the data, the errors " &
-      //"hold only if nothing relaxes later. The equilibrium modulus of a series is then " &
-      //"reported as ""not seen"": the fitted value contains everything that relaxes later."), &
-      entry_t("", "The exit code is 5 if the fit does not converge or the data do not determine " &
-      //"the parameters."), &
-      entry_t("example", "vcor fit examples/soft_rubber_data.csv --output soft_rubber.nml"), &
-      !
       entry_t("command", "verify"), &
       entry_t("usage", "vcor verify [CASE.nml ...] [options]"), &
       entry_t("summary", "verify the program, or cases"), &
@@ -201,6 +148,7 @@ module vcor_app_commands
    !> Commands of the Python package, which are separate programs, and their summaries
    type(entry_t), parameter :: package_commands(*) = [ &
       entry_t("plot", "draw figures of results"), &
+      entry_t("fit", "identify a material from measured moduli"), &
       entry_t("identify", "find materials from measured impacts, and what the data leave open"), &
       entry_t("uncertainty", "find how uncertain results are, and which values cause it"), &
       entry_t("export", "write the law of impact for DEM and multibody programs"), &

@@ -123,7 +123,7 @@ contains
       end if
       ! plain numbers are for scripts, which do not expect files
       if (size(request%names) > 0 .and. .not. allocated(request%directory)) files%writes = .false.
-      if (request%command == 'verify' .or. request%command == 'fit') files%writes = .false.
+      if (request%command == 'verify') files%writes = .false.
       files%history = files%history .and. any(files%writes)
       ! the file that vcor merge reads
       if (request%shards > 0) files%writes = [.false., .false., .true.]

@@ -74,7 +74,7 @@ contains
             end do
             if (.not. allocated(error)) call validate(job%case, error)
             if (.not. allocated(error)) call refuse_unread(job%case, &
-               any(request%command == ['material', 'fit     ']), error)
+               request%command == 'material', error)
             if (.not. allocated(error)) call read_data(job%case, error)
             if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error)
             if (allocated(error)) return

@@ -6,7 +6,6 @@ program vcor_main
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
    use vcor_app_external, only : run_external
-   use vcor_app_fit, only : fit_data
    use vcor_app_help, only : help_json, help_text
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
@@ -84,7 +83,7 @@ contains
       case ('help')
          topic = ''
          if (size(request%files) > 0) topic = request%files(1)%text
-         if (allocated(request%json)) then
+         if (request%json) then
             text = help_json()
          else
             call help_text(topic, text, error)
@@ -92,8 +91,6 @@ contains
          if (.not. allocated(error)) call write_stdout(text, error)
       case ('merge')
          call merge_shards(request, error)
-      case ('fit')
-         call fit_data(request, error)
       case default
          if (size(request%files) == 0) then
             call verify_program(request%quiet, error)

@@ -41,7 +41,6 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/vcorConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion)
 install(FILES
   "${PROJECT_BINARY_DIR}/vcorConfig.cmake" "${PROJECT_BINARY_DIR}/vcorConfigVersion.cmake"
-  ${vcor_find_modules}
   DESTINATION "${vcor_cmake_folder}" COMPONENT development)
 
 # For pkg-config. What a static library stands on is needed by everyone who links with it, so it is
@@ -71,7 +70,7 @@ function(vcor_pkg_config name)
   install(FILES "${PROJECT_BINARY_DIR}/${name}.pc"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 endfunction()
-vcor_pkg_config(vcor vcor_files vcor_fit vcor_core)
+vcor_pkg_config(vcor vcor_files vcor_core)
 vcor_pkg_config(vcor-core vcor_core)
 set(vcor_name vcor-c)
 set(vcor_libraries -lvcor)

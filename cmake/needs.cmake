@@ -5,8 +5,7 @@
 #
 # finds the package, links the target with it, and keeps what those need who build with an installed
 # library: the line for vcorConfig.cmake in <target>_find_dependencies, the libraries for pkg-config
-# in <target>_needed_libraries, Debian's packages in vcor_debian_packages. A module cmake/Find<package>.cmake
-# of our own is installed with the package.
+# in <target>_needed_libraries, Debian's packages in vcor_debian_packages.
 #
 # A macro, since what find_package says is wanted where it is called.
 
@@ -27,9 +26,6 @@ macro(vcor_needs target package)
     vcor_library_words(need_words ${need_target})
     list(APPEND ${target}_needed_libraries ${need_words})
   endforeach()
-  if(EXISTS "${PROJECT_SOURCE_DIR}/cmake/Find${package}.cmake")
-    list(APPEND vcor_find_modules "${PROJECT_SOURCE_DIR}/cmake/Find${package}.cmake")
-  endif()
 endmacro()
 
 # What a linker is told about a target or a library: -L/folder -lname for a file, without the folder

@@ -3,7 +3,7 @@
 #
 #   scripts/figures.sh [DIRECTORY]       default: docs/gallery
 #
-# Takes the program of $VCOR, of the release build, or of the PATH; and vcor-plot of the PATH, or the
+# Takes the program of $VCOR, of the release build, or of the PATH; and vcor-plot and vcor-fit of the PATH, or the
 # package as its sources are, with $PYTHON (default: that of build/venv) and the library of the build.
 set -euo pipefail
 
@@ -34,7 +34,9 @@ if ! command -v vcor-plot >"$scratch/found"; then
       || fail "no vcor-plot: pip install './python[plot]'"
    # it notes what is to be drawn, for one Python to draw it all
    printf '#!/bin/sh\nprintf "%%s\\0" "$@" "" >>"%s/plots"\n' "$scratch" >"$scratch/bin/vcor-plot"
-   chmod +x "$scratch/bin/vcor-plot"
+   # shellcheck disable=SC2016  # the variable is that of the script
+   printf '#!/bin/sh\nexec "$PYTHON" -c "from vcor._command import fit; fit()" "$@"\n' >"$scratch/bin/vcor-fit"
+   chmod +x "$scratch/bin/vcor-plot" "$scratch/bin/vcor-fit"
 fi
 awk '/^```sh$/ { on = 1; next } /^```$/ { on = 0 } on' "$top/docs/gallery.md" >"$scratch/commands.sh"
 

@@ -72,7 +72,6 @@ look() {
    need "ninja" "ninja-build" have ninja
    need "LAPACK" "liblapack-dev" compiles gfortran 'end' -llapack
    need "BLAS" "libblas-dev" compiles gfortran 'end' -lblas
-   need "MINPACK" "minpack-dev" compiles gfortran 'end' -lminpack
    need "HDF5 with Fortran (h5fc)" "libhdf5-dev" have_hdf5
    if [ "$tests" = yes ]; then
       # fpm finds HDF5 with it

@@ -1,5 +1,5 @@
 !> The public interface of the library: all that a program needs to describe impacts, solve one or
-!> many of them, write the results and fit materials. Each name is documented where it is declared,
+!> many of them and write the results. Each name is documented where it is declared,
 !> and used once in tests/unit/test_library.f90
 module vcor
    use vcor_case_case, only : case_t
@@ -7,7 +7,6 @@ module vcor
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, error_usage
-   use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
@@ -61,7 +60,5 @@ module vcor
    public :: sweep_t, new_sweep, solve_sweep, summary_t, failures_t
    ! results
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
-   ! identification
-   public :: samples_t, fit_t, estimate_t, fit_material
 
 end module vcor

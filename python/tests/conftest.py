@@ -1,8 +1,11 @@
 """What the tests of the package share: the program to compare with, and cases."""
 
+import io
 import os
 import subprocess
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -22,8 +25,12 @@ def program(tmp_path):
     """Run the program in an empty folder; its exit code, output and line of error."""
 
     def run(*words, code=0):
+        # as installed, where PATH has vcor-fit
+        call = [os.environ["VCOR"]]
+        if words[0] == "fit":
+            call, words = [sys.executable, "-c", "from vcor._command import fit; fit()"], words[1:]
         done = subprocess.run(
-            [os.environ["VCOR"], *map(str, words)],
+            [*call, *map(str, words)],
             cwd=tmp_path,
             capture_output=True,
             encoding="utf-8",
@@ -41,3 +48,59 @@ def sls():
     import vcor
 
     return vcor.read(PAPER / "sls.nml")
+
+
+class Shell:
+    """`vcor fit` as a user calls it, and the program, in an empty folder."""
+
+    def __init__(self, folder, capsys, monkeypatch):
+        self.folder, self._capsys, self._patch = folder, capsys, monkeypatch
+        monkeypatch.chdir(folder)
+
+    def write(self, text, name="case.nml"):
+        """Write a file."""
+        data = text if isinstance(text, bytes) else text.encode()
+        (self.folder / name).write_bytes(data)
+
+    def __call__(self, *words, input=""):
+        """Run a command; exit code, output and errors."""
+        words = [str(word) for word in words]
+        if words[0] != "fit":
+            done = subprocess.run(
+                [os.environ["VCOR"], *words], capture_output=True, encoding="utf-8", check=False
+            )
+            return SimpleNamespace(code=done.returncode, out=done.stdout, err=done.stderr)
+        from vcor.materials.fit_command import main
+
+        self._patch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(input.encode())))
+        self._capsys.readouterr()
+        code = 0
+        try:
+            main(words[1:])
+        except SystemExit as leaving:
+            code = leaving.code
+        out, err = self._capsys.readouterr()
+        return SimpleNamespace(code=code, out=out, err=err)
+
+    def succeeds(self, *words, **options):
+        """Run a command that says nothing on stderr; what it prints."""
+        done = self(*words, **options)
+        assert (done.code, done.err) == (0, "")
+        return done.out
+
+    def refuses(self, *words, code, says=(), at="", **options):
+        """Run a command that complains in one line and leaves everything as it was."""
+        before = sorted(self.folder.rglob("*"))
+        done = self(*words, **options)
+        assert (done.code, done.out) == (code, "")
+        assert done.err.startswith(f"vcor: error: {at}") and done.err.count("\n") == 1
+        for word in [says] if isinstance(says, str) else says:
+            assert word in done.err
+        assert sorted(self.folder.rglob("*")) == before
+        return done.err
+
+
+@pytest.fixture
+def shell(tmp_path, capsys, monkeypatch):
+    """Run `vcor fit` and the program in an empty folder."""
+    return Shell(tmp_path, capsys, monkeypatch)

@@ -8,7 +8,7 @@ module vcor_json
    implicit none
    private
 
-   public :: object, array, member, words, strings, numbers
+   public :: object, array, member, words, strings
 
    !> A member of an object with a text, a real or a logical value
    interface member
@@ -34,23 +34,6 @@ contains
          list = list//quoted(texts(i))//', '
       end do
    end function strings
-
-   !> Numbers with the digits that restore the same bits; null if not finite
-   pure function numbers(values) result(list)
-      real(wp), intent(in) :: values(:)
-      character(len=:), allocatable :: list
-
-      integer :: i
-
-      list = ''
-      do i = 1, size(values)
-         if (ieee_is_finite(values(i))) then
-            list = list//real_text(values(i))//', '
-         else
-            list = list//'null, '
-         end if
-      end do
-   end function numbers
 
    !> Members as an object
    pure function object(members) result(text)
@@ -101,7 +84,8 @@ contains
       real(wp), intent(in) :: value
       character(len=:), allocatable :: text
 
-      text = quoted(name)//': '//numbers([value])
+      text = quoted(name)//': null, '
+      if (ieee_is_finite(value)) text = quoted(name)//': '//real_text(value)//', '
    end function real_member
 
    pure function logical_member(name, value) result(text)

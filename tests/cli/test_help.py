@@ -6,7 +6,7 @@ import tomllib
 import pytest
 from program import NAMES, ROOT, USAGE
 
-TOPICS = ["run", "check", "material", "fit", "verify", "help", "input", "output"]
+TOPICS = ["run", "check", "material", "verify", "help", "input", "output"]
 
 
 def test_version_is_that_of_the_package(vcor):
@@ -20,7 +20,7 @@ def test_version_is_that_of_the_package(vcor):
 def test_overview(vcor, words):
     page = vcor.succeeds(*words)
     assert page == vcor.succeeds("help")
-    for word in ("vcor run", "vcor check", "vcor material", "vcor fit", "vcor verify", "vcor help", "--version", "exit codes"):
+    for word in ("vcor run", "vcor check", "vcor material", "vcor verify", "vcor help", "--version", "exit codes"):
         assert word in page
 
 
@@ -38,7 +38,7 @@ def test_the_overview_names_every_topic(vcor, topic):
     assert topic in vcor.succeeds("help")
 
 
-@pytest.mark.parametrize("command", ["run", "check", "material", "fit", "verify"])
+@pytest.mark.parametrize("command", ["run", "check", "material", "verify"])
 @pytest.mark.parametrize("option", ["--help", "-h"])
 def test_help_after_a_command(vcor, command, option):
     page = vcor.succeeds("help", command)

@@ -182,16 +182,3 @@ def test_merge(vcor):
         vcor.succeeds("run", "a.nml", "m.nml", "--shard", f"{i}/2", "--quiet", "--output", "parts")
     vcor.succeeds("merge", "parts/a_shard_1_of_2.h5", "parts/a_shard_2_of_2.h5", "--output", "out")
     assert (vcor.folder / "out/a_summary.csv").read_bytes() == whole
-
-
-def test_a_number_of_a_list_in_a_fit(vcor):
-    """vcor fit samples the case with what --set says of a list."""
-    prony = RUBBER.replace("'sls'", "'prony'").replace(
-        "glassy_modulus = 15e6, alpha = 300, beta = 1200",
-        "equilibrium_modulus = 4e6, moduli = 6e6, 9e6, times = 2e-4, 3e-3",
-    )
-    vcor.write(BODIES + STEEL + prony, "a.nml")
-    vcor.write(BODIES + STEEL + prony.replace("9e6", "7e6"), "b.nml")
-    words = ("fit", "--terms", "2", "--name", "x", "--from-model")
-    found = vcor.succeeds(*words, "a.nml", "--set", "rubber.moduli(2)=7e6").split("&material")[1]
-    assert found == vcor.succeeds(*words, "b.nml").split("&material")[1]

@@ -33,12 +33,10 @@ def test_names_that_begin_a_pipe(vcor, result, name):
     shutil.copy(result, vcor.folder / f"{name}.h5")
     vcor.write(SLS)
     vcor.write(SLS, f"{name}.nml")
-    vcor.write("t,E\n1,5\n2,4\n3,3\n4,2.5\n", "data.csv")
     for place in (name, f"{name};/", f"out/{name}", f"{name}/x", f"{name}.svg"):
         for words in (
             ["run", "case.nml"],
             ["material", "case.nml"],
-            ["fit", "data.csv", "--model", "sls"],
             ["merge", "case.h5"],
         ):
             vcor.refuses(*words, "--output", place, code=USAGE, says=["--output", "pipe"])
@@ -59,24 +57,18 @@ def test_control_characters(vcor, result, control):
     shutil.copy(result, vcor.folder / f"{name}.h5")
     vcor.write(SLS)
     vcor.write(SLS, f"{name}.nml")
-    data = "t,E\n1,5\n2,4\n3,3\n4,2.5\n"
-    vcor.write(data, "data.csv")
-    vcor.write(data, f"{name}.csv")
-    fit = ["fit", "data.csv", "--model", "sls"]
+    vcor.write("t [s],E [Pa]\n1,5\n2,4\n", f"{name}.csv")
     for words in (
         ["run", "case.nml"],
         ["material", "case.nml"],
-        fit,
         ["merge", "case.h5"],
     ):
         for place in (name, f"{name}/", f"{name}.svg"):
             vcor.refuses(*words, "--output", place, code=USAGE, says="--output")
     for words in (
-        [*fit, "--name", name],
         ["run", f"{name}.nml"],
         ["run", f"{name}.nml", "--output", "out"],
         ["check", f"{name}.nml"],
-        ["fit", f"{name}.csv", "--model", "sls"],
         ["merge", f"{name}.h5"],
         ["run", "case.nml", f"--output={name}"],
     ):

@@ -58,9 +58,7 @@ HEADERS = [
     ("t [s],G [Pa]", "tensile", ["shear modulus", "modulus_kind = 'shear'"]),
     ("t [s],shear_modulus [Pa]", "tensile", ["shear modulus"]),
     ("t [s],E [Pa]", "shear", ["tensile modulus", "modulus_kind = 'shear'"]),
-    ("t [s],Young's modulus [Pa]", "shear", ["tensile modulus"]),
-    ("t [s],G [kPa]", "shear", ["'kPa'", "modulus_unit = 'kPa'"]),
-    ("t [ms],G [Pa]", "shear", ["'ms'", "time_unit = 'ms'"]),
+    ("t [s],Young's modulus [Pa]", "shear", ["vcor table"]),
     ("t [s],G [Pa]", "shear", None),
     ("t [s],relaxation_modulus [Pa]", "shear", None),
     ("t [s],modulus [Pa]", "tensile", None),
@@ -78,31 +76,6 @@ def test_headers(vcor, header, kind, says):
         vcor.refuses("check", "case.nml", code=INPUT, says=says, at="points.csv:1")
     else:
         vcor.succeeds("check", "case.nml")
-
-
-def test_a_fit_converts_once(vcor):
-    """From data of G, and from a case whose moduli are shear moduli."""
-    vcor.write("t [s],G [Pa]\n" + "".join(f"{10**-i},{1e6 + i * 1e5}\n" for i in range(6, -1, -1)),
-               "g.csv")  # fmt: skip
-    path = vcor.folder / "g.csv"
-    rows = path.read_text().replace("t [s],G", "t [s],E").splitlines()
-    scaled = [f"{t},{float(m) * FACTOR!r}" for t, m in (row.split(",") for row in rows[1:])]
-    vcor.write("\n".join([rows[0], *scaled]) + "\n", "e.csv")
-    fit = ("fit", "--model", "prony", "--poisson-ratio", "0.4", "--name", "x")
-    groups = [vcor.succeeds(*fit, name).split("&material")[1] for name in ("g.csv", "e.csv")]
-    assert groups[0] == groups[1]
-    assert "modulus_kind" not in groups[0]
-
-    vcor.write(case(material("cerf", more="modulus_kind = 'shear'")))
-    vcor.write(case(material("cerf", b=FACTOR)), "tensile.nml")
-    words = ("fit", "--model", "cerf", "--from-model")
-    screens = [vcor.succeeds(*words, name) for name in ("case.nml", "tensile.nml")]
-    differences = [
-        float(line.split()[-1]) for screen in screens
-        for line in screen.splitlines() if "cor of the impact" in line
-    ]  # fmt: skip
-    assert len(differences) == 2
-    assert max(map(abs, differences)) < 1e-6
 
 
 def test_reliance_takes_the_moduli_as_they_are(vcor):

@@ -166,15 +166,6 @@ def test_moduli(vcor, model):
             assert one == pytest.approx(other, rel=ROUNDING, nan_ok=True)
 
 
-def test_a_fit_to_a_shifted_material_says_at_which_temperature(vcor):
-    """The group that it prints has no shift."""
-    for temperature, found in ((310.5, " at 310.5000 K"), (REFERENCE, "")):
-        vcor.write(case(shifted("sls", "wlf"), temperature=temperature))
-        out = vcor.succeeds("fit", "--from-model", "case.nml", "--model", "sls")
-        assert f" samples of sheet{found}, time" in out
-        assert f"fit of sls to case.nml{found}\n" in out
-
-
 def test_what_check_prints_runs(vcor):
     vcor.write(case(shifted("sls", "wlf"), temperature=310.0))
     plain = vcor.numbers("case.nml")
@@ -296,6 +287,10 @@ def test_idle_materials_need_not_bear_the_temperature(vcor):
         ("T [C], log10_aT\n0, nan\n50, 0.5\n", ["shift.csv:2"]),
         ("T [C], log10_aT\n0, 1\n", ["2 at least"]),
         ("", ["shift.csv"]),
+        ("250,3\n298.15,0\n320,-1.5\n", ["shift.csv:1", "without names", "vcor table shift.csv"]),
+        ("250 3\n298.15 0\n", ["shift.csv:1", "1 column", "vcor table shift.csv > t.csv"]),
+        ("Temp./°C;log aT\n-23,15;3\n", ["shift.csv:1", "vcor table shift.csv > t.csv"]),
+        ("T [C],ln aT\n0,1\n50,-3\n", ["shift.csv:1", "log10 of the shift factor"]),
         ("T [C], log10_aT\n30, 1\n90, -4\n", ["303.15 K to 363.15 K", "not extrapolated"]),
         ("T [C], log10_aT\n-30, 1\n30, -4\n", ["243.15 K to 303.15 K", "not extrapolated"]),
     ],
@@ -315,17 +310,14 @@ def test_a_missing_table(vcor):
     "table",
     [
         "T [K], log10_aT\n250, 3\n298.15, 0\n320, -1.5\n",
-        "250 3\n298.15 0\n320 -1.5\n",
-        "320\t-1.5\n298.15\t0\n250\t3\n",
-        "# T [K], log10_aT\n250,3\n298.15,0\n320,-1.5\n",
-        "Temp./°C;log aT\n-23,15;3\n25,0;0\n46,85;-1,5\n",
-        "T,log_aT\n°C,-\n-23.15,3\n25.0,0\n46.85,-1.5\n",
+        "temperature [K],log10_shift_factor [1]\n320,-1.5\n298.15,0\n250,3\n",
+        "# of BUTYL\n\ntemperature [degC],log10 a_T\r\n-23.15,3\r\n25.0,0\r\n46.85,-1.5\r\n",
         # only differences count
         "Temperature (degC), log10(a_T)\n-23.15,5\n25.0,2\n46.85,0.5\n",
     ],
 )
 def test_tables(vcor, table):
-    """Units, separators and headers; the factor at the reference temperature is 1."""
+    """Names and units; the factor at the reference temperature is 1."""
     vcor.write(table, "shift.csv")
     vcor.write(case(shifted("sls", "table"), temperature=320.0))
     found = vcor.numbers("case.nml")

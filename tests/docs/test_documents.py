@@ -106,7 +106,7 @@ def folder(vcor, tmp_path):
     shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/vcor").symlink_to(vcor)
-    for name in ("card", "export", "identify", "master", "plot", "table", "uncertainty"):
+    for name in ("card", "export", "fit", "identify", "master", "plot", "table", "uncertainty"):
         script = tmp_path / f"bin/vcor-{name}"
         script.write_text(f"#!{sys.executable}\nfrom vcor._command import {name}\n\n{name}()\n")
         script.chmod(0o755)

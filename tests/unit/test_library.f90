@@ -7,12 +7,12 @@ program test_library
    use vcor, only : base_bonded, base_free, base_half_space, base_sliding, case_t, case_text, &
       cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
       contact_resting, contact_separated, contact_sticking, error_file, error_input, &
-      error_numerical, error_t, error_usage, estimate_t, face_t, failures_t, fit_material, fit_t, &
+      error_numerical, error_t, error_usage, face_t, failures_t, &
       history_table, impact_t, material_t, mittag_leffler_t, new_cerf, &
       new_contact_law, new_contact_modulus, new_elastic, new_face, new_impact, new_mittag_leffler, &
       new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
       new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, power_law_t, &
-      problem_of_case, problem_t, prony_t, read_case, read_case_text, read_data, samples_t, &
+      problem_of_case, problem_t, prony_t, read_case, read_case_text, read_data, &
       solve_impact, solve_sweep, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
       table_t, tabulated_t, trajectory_t, validate, version, waves_constant, &
       waves_frozen, waves_hereditary, waves_none, waves_relaxing, wp, write_csv, write_hdf5
@@ -33,7 +33,6 @@ program test_library
    call test_case()
    call test_errors()
    call test_sweep()
-   call test_fit()
    call finish()
 
 contains
@@ -376,29 +375,5 @@ contains
       call summary_table(table, 'sweep', case_text(case, complete=.true.), sweep%grid, summary)
       call check_close(table%columns(1)%reals(3), sls_cor, tolerance, "the same in the table")
    end subroutine test_sweep
-
-   !> Samples of an SLS give its parameters
-   subroutine test_fit()
-      type(samples_t) :: samples
-      type(fit_t) :: fit
-      type(estimate_t) :: none(0)
-      type(error_t), allocatable :: error
-      integer :: i
-
-      samples%at = [(10.0_wp**(0.1_wp*i), i=-40, -10)]
-      samples%modulus = 1.0e6_wp*(1.0_wp + 2.0_wp*exp(-300.0_wp*samples%at))
-      allocate (samples%loss(0))
-      call fit_material(fit, 'sls', 0, none, samples, error)
-      call success(error, "a material is fitted")
-      call check(size(fit%parameters) == 3, "an SLS has three parameters")
-      do i = 1, size(fit%parameters)
-         associate (found => fit%parameters(i))
-            if (found%name == 'glassy_modulus') &
-               call check_relative(found%value, 3.0e6_wp, 1.0e-6_wp, "its glassy modulus")
-            if (found%name == 'beta') &
-               call check_relative(found%value, 300.0_wp, 1.0e-6_wp, "its rate")
-         end associate
-      end do
-   end subroutine test_fit
 
 end program test_library

@@ -11,8 +11,7 @@ program test_material
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
-   use vcor_material_type, only : linear, parameter_t, power_of_time
-   use vcor_number, only : is_within
+   use vcor_material_type, only : parameter_t, power_of_time
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes
@@ -548,9 +547,6 @@ contains
          call check(stated%meaning /= '', model//" has a meaning")
          call check(stated%default == '' .or. .not. stated%required, &
             model//" has a default or is required")
-         call check((stated%scale == linear) .eqv. (stated%fitted .and. &
-            is_within(stated%range, 0.0_wp) .and. stated%name /= 'beta'), &
-            model//" is linear where a fit may find 0")
          ! what a temperature makes of a parameter follows from its unit
          time = stated%unit
          if (stated%unit(:2) == 'Pa') time = adjustl(stated%unit(3:))

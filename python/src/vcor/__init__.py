@@ -16,13 +16,13 @@ from ._library import (
     __version__,
 )
 from .case import Case, Material, read
-from .materials.fit import Fit, fit
 from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
 
 if TYPE_CHECKING:
     from .exchange.cards import card, read_card
     from .exchange.codes import export, pair
     from .materials.data import read_data
+    from .materials.fit import Fit, fit
     from .materials.identification import identify
     from .materials.master import master
     from .uncertainty import propagate, sensitivities
@@ -58,8 +58,10 @@ for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, Usa
 
 #: What needs scipy, by its module; imported when it is used
 _LATER = {
+    "Fit": "materials.fit",
     "card": "exchange.cards",
     "export": "exchange.codes",
+    "fit": "materials.fit",
     "identify": "materials.identification",
     "master": "materials.master",
     "pair": "exchange.codes",

@@ -127,6 +127,7 @@ def _run(name: str, module: str) -> None:
 # The commands vcor-NAME
 card = functools.partial(_run, "card", "exchange.cards")
 export = functools.partial(_run, "export", "exchange.codes")
+fit = functools.partial(_run, "fit", "materials.fit_command")
 identify = functools.partial(_run, "identify", "materials.identification")
 master = functools.partial(_run, "master", "materials.master")
 plot = functools.partial(_run, "plot", "plot")

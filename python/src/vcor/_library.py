@@ -151,13 +151,6 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
     "vcor_time_factor": [c_void_p, c_char_p, POINTER(c_double)],
     "vcor_verify": [c_void_p, _doubles],
-    "vcor_fit_data": [
-        c_char_p, c_int, c_int, _doubles, c_char_p, c_char_p, c_int, c_int, _texts, _doubles,
-        c_double, c_double, POINTER(c_void_p),
-    ],
-    "vcor_read_moduli": [
-        c_char_p, c_char_p, c_double, POINTER(c_int), POINTER(c_int), POINTER(c_void_p),
-    ],
 }  # fmt: skip
 for _name, _types in _ARGUMENTS.items():
     getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]

@@ -1,5 +1,4 @@
-!> Materials found by a fit: as a group of a case, as a replacement in a case, and the reliance of
-!> an impact on such a material beyond the data of the fit
+!> The reliance of an impact on a material that was found by a fit, beyond the data of the fit
 !>
 !> The keys valid_from and valid_to of a material are the band of these data. The reliance is the
 !> change of the coefficient of restitution if the modulus is held constant outside of the band,
@@ -9,20 +8,17 @@
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
-   use vcor_case_catalogue, only : find_group
-   use vcor_case_printed, only : case_text
    use vcor_case_problem, only : material_of_case, solve_case
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
-   use vcor_material, only : material_data_t, parameters_of
    use vcor_material_moduli, only : sampled_times, time_range_t
-   use vcor_material_type, only : material_t, parameter_t
+   use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: put_material, material_text, reliance_t, find_reliance
+   public :: reliance_t, find_reliance
 
    !> Change of cor that is not reported; the solutions are ten times more accurate
    real(wp), parameter :: reported_change = 1.0e-4_wp
@@ -51,32 +47,6 @@ module vcor_case_identified
 
 contains
 
-   !> Set model and parameters of a material of a case; name, density and Poisson's ratio remain
-   subroutine put_material(case, item, data)
-      !> The case; it needs no further validation
-      type(case_t), intent(inout) :: case
-      !> Index of the material
-      integer, intent(in) :: item
-      type(material_data_t), intent(in) :: data
-
-      type(parameter_t), allocatable :: parameters(:)
-      integer :: i
-
-      call case%set(case%address('material', 'model', item), data%model, given=.true.)
-      call take_as_is(case, item)
-      allocate (parameters, source=parameters_of(data%model))
-      do i = 1, size(parameters)
-         if (.not. parameters(i)%fitted .or. parameters(i)%is_list) cycle
-         associate (name => parameters(i)%name)
-            call case%set(case%address('material', name, item), data%number(name))
-         end associate
-      end do
-      if (data%model /= 'prony') return
-      call case%set(case%address('material', 'moduli', item), data%list('moduli'), given=.true.)
-      call case%set(case%address('material', 'times', item), 1.0_wp/data%list('rates'), &
-         given=.true.)
-   end subroutine put_material
-
    !> Remove shear and shift of a material: its moduli are tensile, at the temperature of the impact
    pure subroutine take_as_is(case, item)
       type(case_t), intent(inout) :: case
@@ -86,38 +56,6 @@ contains
       call case%unset(case%address('material', 'modulus_kind', item))
       call case%unset(case%address('material', 'shift', item))
    end subroutine take_as_is
-
-   !> A material as a &material group
-   function material_text(data, density, poisson_ratio, valid_from, valid_to, keys) result(text)
-      !> The material, with its name
-      type(material_data_t), intent(in) :: data
-      !> Density [kg/m3]; 0: unknown
-      real(wp), intent(in) :: density
-      !> Poisson's ratio [-]
-      real(wp), intent(in) :: poisson_ratio
-      !> Start of the band of the fit [s]
-      real(wp), intent(in) :: valid_from
-      !> End of the band of the fit [s]
-      real(wp), intent(in) :: valid_to
-      !> Lines with further keys; absent: none
-      character(len=*), intent(in), optional :: keys
-      !> The group, each key with its unit and meaning
-      character(len=:), allocatable :: text
-
-      type(case_t) :: case
-      integer :: item
-
-      call case%start('fit')
-      call case%add(find_group('material'), 0, item)
-      call case%set(case%address('material', 'name'), data%name, given=.true.)
-      call put_material(case, item, data)
-      if (density > 0.0_wp) call case%set(case%address('material', 'density'), density)
-      call case%set(case%address('material', 'poisson_ratio'), poisson_ratio)
-      call case%set(case%address('material', 'valid_from'), valid_from)
-      call case%set(case%address('material', 'valid_to'), valid_to)
-      text = case_text(case, complete=.false., remarks=.true.)
-      if (present(keys)) text = text(:index(text, '/', back=.true.) - 1)//keys//'/'//new_line('a')
-   end function material_text
 
    !> Find the reliance of an impact on a material beyond its data
    subroutine find_reliance(reliance, case, item, contact_time)

@@ -1,44 +1,54 @@
-!> Reads the data files of materials, in the form of `vcor_io_columns`
+!> Reads the data files of materials: plain text of two columns with a comma between them
 !>
-!> Relaxation modulus: each line has a time and a modulus. One line before the first number may name
-!> the columns. The units are in the case; a header with other units, shear moduli or dynamic data
-!> is refused.
-!>
-!> Shift factors: each line has a temperature and log10 a_T. A line before the first number names
-!> them and states the unit of temperatures, K or C; it may follow a #, and units may be in a second
-!> line. Without it temperatures are in K.
+!> The first line names both columns with their units, `time [s],relaxation_modulus [Pa]` or
+!> `temperature [K],log10_shift_factor [1]`. A file of moduli may have no such line, or no units in
+!> it, if the case gives time_unit and modulus_unit. Text after a # and blank lines are ignored. All
+!> other forms are refused: vcor table makes a plain file of what instruments write.
 module vcor_io_data_file
+   use vcor_case_case, only : case_t
    use vcor_error, only : error_input, error_t, raise
-   use vcor_io_columns, only : lines_in, read_value, row_t
    use vcor_io_file, only : read_text_file
-   use vcor_io_header, only : check_unit, header_t, longest_word, name_of, names_tensile, &
-      note_comment, read_names, read_units, role_none, role_of, role_relaxation, role_time, &
-      temperature_names, unit_size
    use vcor_io_path, only : folder_of, join_path
    use vcor_kinds, only : wp
-   use vcor_material_table, only : modulus_rounding
-   use vcor_case_case, only : case_t
-   use vcor_number, only : read_real, real_text
-   use vcor_text, only : integer_text, lower, printable, shortened
+   use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
+   use vcor_number, only : looks_numeric, read_real, real_text
+   use vcor_text, only : has_control, integer_text, lower, printable, shortened
    use vcor_words, only : contains_word
    implicit none
    private
 
    public :: read_data, data_file
 
-   !> Names of the columns
-   character(len=*), parameter :: names(2) = [character(len=7) :: "time", "modulus"]
-   !> Roles of the columns
-   integer, parameter :: expected_roles(2) = [role_time, role_relaxation]
-
+   !> Names of the columns, separated by blanks
+   character(len=*), parameter :: time_names = 't time', &
+      tensile_names = 'e e(t)', neutral_names = 'modulus relaxation_modulus', &
+      shear_names = 'g g(t) shear_modulus shear_relaxation_modulus', &
+      temperature_names = 'T temperature Temperature', &
+      shift_names = 'log10_shift_factor log10_at log10_a_t log10(at) log10(a_t)'
+   !> Units of temperatures
+   character(len=*), parameter :: kelvin_names = 'K', celsius_names = 'C degC'
    !> Zero of the Celsius scale [K]
    real(wp), parameter :: ice_point = 273.15_wp
-   !> Names of the units of temperature
-   character(len=*), parameter :: kelvin_names = 'k kelvin'
-   character(len=*), parameter :: celsius_names = 'c degc deg_c celsius'
-   !> Expected file, for messages
-   character(len=*), parameter :: shift_example = ', expected a temperature and log10 of the ' &
-      //"shift factor under a header such as 'T [C], log10_aT'"
+   !> Longest name or unit of a column
+   integer, parameter :: longest_word = 40
+
+   !> A file of two columns
+   type :: plain_t
+      !> Name for messages
+      character(len=:), allocatable :: name
+      !> Name of the file and how to make a plain one of it, for messages
+      character(len=:), allocatable :: advice
+      !> Names and units of the columns; blank if the file does not state them
+      character(len=longest_word) :: names(2) = '', units(2) = ''
+      !> Line of the names; 0: none
+      integer :: head = 0
+      !> The numbers, shape (2, n)
+      real(wp), allocatable :: points(:, :)
+      !> Their lines, shape (n)
+      integer, allocatable :: lines(:)
+      !> Last line of the file
+      integer :: last_line = 0
+   end type plain_t
 
 contains
 
@@ -49,33 +59,27 @@ contains
       !> Error of code `error_file` if a file cannot be read, `error_input` if its contents are
       !> wrong; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      real(wp), allocatable :: times(:), moduli(:)
-      character(len=:), allocatable :: path, text, unit
-      real(wp) :: scale(2)
+
+      type(plain_t) :: plain
+      character(len=:), allocatable :: path
       integer :: item
 
-      do item = 1, case%count("material")
-         path = data_file(case, item, "shift_file")
-         if (path /= "") then
-            call read_file("shift_file", "a file of temperatures and shift factors")
-            if (.not. allocated(error)) &
-               call read_shift_table(text, printable(path), times, error)
+      do item = 1, case%count('material')
+         path = data_file(case, item, 'shift_file')
+         if (path /= '') then
+            call read_file('shift_file', 'a file of temperatures and shift factors')
+            if (.not. allocated(error)) call check_shift(plain, error)
             if (allocated(error)) return
-            call case%set(case%address("material", "shift_file", item), times, given=.true.)
+            call case%set(case%address('material', 'shift_file', item), &
+               reshape(plain%points, [size(plain%points)]), given=.true.)
          end if
          path = data_file(case, item)
-         if (path == "") cycle
-         call read_file("file", "a file of times and moduli")
+         if (path == '') cycle
+         call read_file('file', 'a file of times and moduli')
+         if (.not. allocated(error)) call check_moduli(plain, case, item, error)
          if (allocated(error)) return
-         call case%get("material", "time_unit", unit, item)
-         scale(1) = unit_size(unit)
-         call case%get("material", "modulus_unit", unit, item)
-         scale(2) = unit_size(unit)
-         call case%get("material", "modulus_kind", unit, item)
-         call read_points(text, printable(path), scale, unit == "shear", times, moduli, error)
-         if (allocated(error)) return
-         call case%set(case%address("material", "times", item), times, given=.false.)
-         call case%set(case%address("material", "moduli", item), moduli, given=.false.)
+         call case%set(case%address('material', 'times', item), plain%points(1, :), given=.false.)
+         call case%set(case%address('material', 'moduli', item), plain%points(2, :), given=.false.)
       end do
 
    contains
@@ -84,9 +88,14 @@ contains
       subroutine read_file(key, kind)
          character(len=*), intent(in) :: key, kind
 
+         character(len=:), allocatable :: text
+
          call read_text_file(path, text, error, kind=kind)
-         if (allocated(error)) error%message = case%location("material", key, item)//": " &
-            //error%message
+         if (allocated(error)) then
+            error%message = case%location('material', key, item)//': '//error%message
+         else
+            call read_plain(text, printable(path), plain, error)
+         end if
       end subroutine read_file
    end subroutine read_data
 
@@ -100,279 +109,316 @@ contains
       character(len=:), allocatable :: path
 
       if (present(key)) then
-         call case%get("material", key, path, item)
+         call case%get('material', key, path, item)
       else
-         call case%get("material", "file", path, item)
+         call case%get('material', 'file', path, item)
       end if
-      if (path /= "") path = join_path(folder_of(case%source), path)
+      if (path /= '') path = join_path(folder_of(case%source), path)
    end function data_file
 
-   !> Read the points of a relaxation modulus
-   subroutine read_points(text, name, scale, is_shear, times, moduli, error)
-      character(len=*), intent(in) :: text
-      character(len=*), intent(in) :: name
-      !> Units of times [s] and moduli [Pa]
-      real(wp), intent(in) :: scale(2)
-      !> Whether they are shear moduli according to the case
-      logical, intent(in) :: is_shear
-      !> Times [s], shape (n), n >= 2
-      real(wp), allocatable, intent(out) :: times(:)
-      !> Moduli [Pa], shape (n)
-      real(wp), allocatable, intent(out) :: moduli(:)
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-      type(row_t) :: row
-      type(header_t) :: header
-      character(len=:), allocatable :: message
-      real(wp), allocatable :: points(:, :)
-      integer :: n, last_line
-      logical :: first
-
-      allocate (points(2, lines_in(text)))
-      n = 0
-      first = .true.
-      do
-         call row%take(text)
-         if (.not. row%is_there) exit
-         if (first) call note_comment(header, row%comment)
-         if (row%columns == 0) cycle
-         if (first) then
-            first = .false.
-            if (.not. any(row%is_numeric([1, 2]))) then
-               call read_names(header, row%content, row%line)
-               call check_header(header, name, scale, is_shear, error)
-               if (allocated(error)) return
-               cycle
-            end if
-         end if
-         call row%check(message)
-         if (allocated(message)) then
-            continue
-         else if (row%columns == 2) then
-            call read_value(row%cell(1), trim(names(1)), scale(1), points(1, n + 1), message)
-            if (.not. allocated(message)) &
-                  call read_value(row%cell(2), trim(names(2)), scale(2), points(2, n + 1), message)
-            if (.not. allocated(message) .and. n > 0) &
-                  call compare(points(:, n), points(:, n + 1), last_line, message)
-         else
-            message = "found "//integer_text(row%columns)//" columns, expected 2, a time and a " &
-                  //"modulus, with a comma, a semicolon, a tab or blanks between them"
-         end if
-         if (allocated(message)) then
-            call raise(error, error_input, name//":"//integer_text(row%line)//": "//message)
-            return
-         end if
-         n = n + 1
-         last_line = row%line
-      end do
-      if (n < 2) then
-         call raise(error, error_input, name//":"//integer_text(max(1, row%line))//": found " &
-               //integer_text(n)//" "//trim(merge("point ", "points", n == 1)) &
-               //", expected 2 at least, a time and a modulus to a line")
-         return
-      end if
-      times = points(1, :n)*scale(1)
-      moduli = points(2, :n)*scale(2)
-   end subroutine read_points
-
-   !> Refuse a header of other quantities than time and relaxation modulus, or with units other than
-   !> those of the case. A line without exactly two names is a title
-   subroutine check_header(header, name, scale, is_shear, error)
-      type(header_t), intent(in) :: header
-      character(len=*), intent(in) :: name
-      !> Units of times [s] and moduli [Pa] in the case
-      real(wp), intent(in) :: scale(2)
-      !> Whether the case has shear moduli
-      logical, intent(in) :: is_shear
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-      character(len=longest_word) :: unit, key
-      character(len=:), allocatable :: place, found
-      integer :: i, role
-      logical :: shear
-
-      place = name//":"//integer_text(header%line)
-      do i = 1, header%count
-         call role_of(header%columns(i), role, shear, unit)
-         found = place//": found '"//shortened(trim(header%columns(i)%name))//"'"
-         if (header%count /= 2) found = found//" in a title"
-         shear = shear .or. index(header%columns(i)%name, "shear") > 0
-         if (shear .and. .not. is_shear) then
-            call raise(error, error_input, found//", a shear modulus, expected a relaxation " &
-                  //"modulus E: give modulus_kind = 'shear' in its &material group, which makes " &
-                  //"E = 2 (1 + nu) G of it, or identify a material by vcor fit")
-         else if (is_shear .and. role == role_relaxation &
-               .and. names_tensile(header%columns(i)%name)) then
-            call raise(error, error_input, found//", a tensile modulus, but the case has " &
-                  //"modulus_kind = 'shear'")
-         else if (all(role /= [role_none, role_time, role_relaxation])) then
-            call raise(error, error_input, found//" ("//name_of(role, unit)//"), expected a " &
-                  //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &
-                  //"identifies a material in them")
-         end if
-         if (allocated(error)) return
-         if (header%count /= 2) cycle
-         if (all(role /= [role_none, expected_roles(i)])) then
-            call raise(error, error_input, found//" ("//name_of(role, unit)//") as column " &
-                  //integer_text(i)//", expected a time and a relaxation modulus")
-         else if (role == role_none .and. unit == "") then
-            call raise(error, error_input, found//" as name of a column, expected "//example(i) &
-                  //", or a unit beside it")
-         end if
-         if (allocated(error)) return
-         if (unit == "") cycle
-         call check_unit(unit, expected_roles(i), place, error)
-         if (allocated(error)) return
-         if (abs(unit_size(trim(unit))/scale(i) - 1.0_wp) < 0.01_wp) cycle
-         key = unit
-         if (unit == "N/mm2") key = "MPa"
-         if (unit == "N/m2") key = "Pa"
-         call raise(error, error_input, place//": found '"//trim(unit) &
-               //"' as unit of the "//trim(names(i))//", which is not that of the case; give " &
-               //trim(names(i))//"_unit = '"//trim(key)//"' in its &material group")
-         return
-      end do
-
-   contains
-
-      !> Names of a column, for messages
-      pure function example(i) result(text)
-         integer, intent(in) :: i
-         character(len=:), allocatable :: text
-
-         text = "t or time"
-         if (i == 2) text = "E or modulus"
-      end function example
-   end subroutine check_header
-
-   !> Compare a point with the one before it
-   pure subroutine compare(before, point, line, message)
-      real(wp), intent(in) :: before(2)
-      real(wp), intent(in) :: point(2)
-      !> Line of the previous point
-      integer, intent(in) :: line
-      !> Message on failure, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-
-      if (.not. point(1) > before(1)) then
-         message = "found time "//real_text(point(1))//" after "//real_text(before(1)) &
-               //" in line "//integer_text(line)//", expected times that increase"
-      else if (.not. point(2) <= before(2)*(1.0_wp + modulus_rounding)) then
-         message = "found modulus "//real_text(point(2))//" after "//real_text(before(2)) &
-               //" in line "//integer_text(line)//", expected moduli that fall: a relaxation " &
-               //"modulus never grows with time; for data with noise identify a model by vcor fit"
-      end if
-   end subroutine compare
-
-   !> Read a table of shift factors
-   subroutine read_shift_table(text, name, table, error)
-      !> Contents of the file
+   !> Read two columns with or without names
+   subroutine read_plain(text, name, plain, error)
       character(len=*), intent(in) :: text
       !> Name of the file, for messages
       character(len=*), intent(in) :: name
-      !> Temperatures [K], increasing, each followed by log10 a_T, shape (2 n), n >= 2
-      real(wp), allocatable, intent(out) :: table(:)
+      type(plain_t), intent(out) :: plain
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(row_t) :: row
-      type(header_t) :: header
-      character(len=:), allocatable :: message
-      real(wp), allocatable :: points(:, :)
-      real(wp) :: zero
-      integer :: n
+      character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+      character(len=*), parameter :: line_feed = achar(10)
+      character(len=:), allocatable :: line, message
+      integer :: first, last, n
 
-      allocate (points(2, lines_in(text)))
+      plain%name = name
+      plain%advice = '; vcor table '//name//' > t.csv makes such a file of others'
+      n = count([(text(first:first) == line_feed, first=1, len(text))]) + 1
+      allocate (plain%points(2, n), plain%lines(n))
       n = 0
-      zero = 0.0_wp
-      do
-         call row%take(text)
-         if (.not. row%is_there) exit
-         if (n == 0 .and. .not. (row%columns > 0 .and. row%is_numeric(1))) then
-            call take_head(header, row%content, row%comment, row%line, message)
-         else if (row%columns > 0) then
-            call row%check(message)
-            if (allocated(message)) then
-               continue
-            else if (row%columns /= 2) then
-               message = 'found '//integer_text(row%columns)//' columns'//shift_example
-            else
-               if (n == 0) call find_zero(header, zero, message)
-               if (.not. allocated(message)) call read_real(row%cell(1), 'a temperature', &
-                  points(1, n + 1), message)
-               if (.not. allocated(message)) call read_real(row%cell(2), &
-                  'log10 of a shift factor', points(2, n + 1), message)
-               if (.not. allocated(message)) then
-                  n = n + 1
-                  points(1, n) = points(1, n) + zero
-                  call compare_shifts(points(:, :n), message)
-               end if
-            end if
-         end if
-         if (allocated(message)) then
-            call raise(error, error_input, name//':'//integer_text(row%line)//': '//message)
-            return
-         end if
+      first = 1
+      if (index(text, byte_order_mark) == 1) first = 1 + len(byte_order_mark)
+      do while (first <= len(text))
+         last = first + index(text(first:)//line_feed, line_feed) - 2
+         line = text(first:last)
+         first = last + 2
+         plain%last_line = plain%last_line + 1
+         line = stripped(line(:index(line//'#', '#') - 1))
+         if (len(line) == 0) cycle
+         call take_line(plain, line, n, message)
+         if (.not. allocated(message)) cycle
+         call complain(plain, plain%last_line, message, error)
+         return
       end do
-      if (n < 2) then
-         call raise(error, error_input, name//': found '//integer_text(n)//' lines of numbers, ' &
-            //'expected 2 at least'//shift_example)
+      if (n < 2) call complain(plain, max(1, plain%last_line), 'found '//integer_text(n) &
+         //trim(merge(' point ', ' points', n == 1))//', expected 2 at least', error)
+      plain%points = plain%points(:, :n)
+      plain%lines = plain%lines(:n)
+   end subroutine read_plain
+
+   !> Take a line: the names, or two numbers
+   subroutine take_line(plain, line, n, message)
+      type(plain_t), intent(inout) :: plain
+      !> The line without remark and without blanks around it
+      character(len=*), intent(in) :: line
+      !> Number of points
+      integer, intent(inout) :: n
+      !> Message on failure, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+
+      character(len=len(line)) :: cells(2)
+      integer :: columns, i, mark
+
+      mark = index(line, ',')
+      columns = 1 + count([(line(i:i) == ',', i=1, len(line))])
+      if (has_control(line)) then
+         message = 'found a control character, expected a text file of two columns with a comma ' &
+            //'between them'
+      else if (columns /= 2) then
+         message = 'found '//integer_text(columns)//trim(merge(' column ', ' columns', &
+            columns == 1))//', expected 2 with a comma between them'
+      end if
+      if (allocated(message)) then
+         message = message//plain%advice
          return
       end if
-      if (points(1, 2) < points(1, 1)) points(:, :n) = points(:, n:1:-1)
-      table = reshape(points(:, :n), [2*n])
-   end subroutine read_shift_table
+      cells(1) = stripped(line(:mark - 1))
+      cells(2) = stripped(line(mark + 1:))
+      if (n == 0 .and. plain%head == 0 .and. .not. (looks_numeric(trim(cells(1))) &
+          .or. looks_numeric(trim(cells(2))))) then
+         plain%head = plain%last_line
+         do i = 1, 2
+            call take_name(trim(cells(i)), plain%names(i), plain%units(i))
+         end do
+         return
+      end if
+      do i = 1, 2
+         call read_real(trim(cells(i)), 'a number', plain%points(i, n + 1), message)
+         if (.not. allocated(message)) cycle
+         if (scan(trim(cells(i)), '; '//achar(9)) > 0) message = message//plain%advice
+         return
+      end do
+      n = n + 1
+      plain%lines(n) = plain%last_line
+   end subroutine take_line
 
-   !> Read a line before the numbers: the names, the units, or a comment
-   pure subroutine take_head(header, content, comment, line, message)
-      type(header_t), intent(inout) :: header
-      character(len=*), intent(in) :: content
-      !> Text after the #
-      character(len=*), intent(in) :: comment
+   !> A text without blanks, tabs and the first half of a line end of Windows at its ends
+   pure function stripped(text)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: stripped
+
+      character(len=*), parameter :: blanks = ' '//achar(9)//achar(13)
+      integer :: first
+
+      first = verify(text, blanks)
+      stripped = text(max(1, first):verify(text, blanks, back=.true.))
+   end function stripped
+
+   !> Split `name [unit]` or `name (unit)`
+   pure subroutine take_name(cell, name, unit)
+      character(len=*), intent(in) :: cell
+      !> The name, with underscores for blanks
+      character(len=*), intent(out) :: name
+      !> The unit; blank if there is none
+      character(len=*), intent(out) :: unit
+
+      integer :: i, mark
+
+      unit = ''
+      mark = index(cell, '[')
+      if (mark == 0 .and. index(cell, ' (') > 0) mark = index(cell, ' (') + 1
+      if (mark > 0 .and. scan(cell(len(cell):), '])') > 0) then
+         unit = adjustl(cell(mark + 1:len(cell) - 1))
+      else
+         mark = len(cell) + 1
+      end if
+      name = cell(:mark - 1)
+      do i = 1, len_trim(name)
+         if (name(i:i) == ' ') name(i:i) = '_'
+      end do
+   end subroutine take_name
+
+   !> Raise an error about a line of a file
+   subroutine complain(plain, line, message, error)
+      type(plain_t), intent(in) :: plain
       integer, intent(in) :: line
+      character(len=*), intent(in) :: message
+      type(error_t), allocatable, intent(out) :: error
+
+      call raise(error, error_input, plain%name//':'//integer_text(line)//': '//message)
+   end subroutine complain
+
+   !> Check names, units and numbers of a relaxation modulus; the points become SI units
+   subroutine check_moduli(plain, case, item, error)
+      type(plain_t), intent(inout) :: plain
+      type(case_t), intent(in) :: case
+      !> Index of the material
+      integer, intent(in) :: item
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=*), parameter :: example = ", expected names such as 'time [s]," &
+         //"relaxation_modulus [Pa]'"
+      character(len=7), parameter :: what(2) = ['time   ', 'modulus']
+      character(len=:), allocatable :: kind, message
+      real(wp) :: scale(2)
+      integer :: i
+
+      call case%get('material', 'modulus_kind', kind, item)
+      if (plain%head > 0) then
+         if (.not. contains_word(time_names, lower(trim(plain%names(1)))) &
+             .or. plain%names(1) == 'T') then
+            message = "found '"//trim(plain%names(1))//"'"//example//plain%advice
+         else if (contains_word(shear_names, lower(trim(plain%names(2))))) then
+            if (kind /= 'shear') message = "found '"//trim(plain%names(2))//"', a shear " &
+               //"modulus, expected a relaxation modulus E: give modulus_kind = 'shear' in its " &
+               //'&material group, which makes E = 2 (1 + nu) G of it'
+         else if (contains_word(tensile_names, lower(trim(plain%names(2))))) then
+            if (kind == 'shear') message = "found '"//trim(plain%names(2))//"', a tensile " &
+               //"modulus, but the case has modulus_kind = 'shear'"
+         else if (.not. contains_word(neutral_names, lower(trim(plain%names(2))))) then
+            message = "found '"//trim(plain%names(2))//"'"//example//plain%advice
+         end if
+         if (allocated(message)) call complain(plain, plain%head, message, error)
+      end if
+      do i = 1, 2
+         if (.not. allocated(error)) call find_unit(trim(what(i)))
+      end do
+      if (allocated(error)) return
+      do i = 1, size(plain%lines)
+         call check_point(plain%points(:, :i), scale, plain%lines(:i), message)
+         if (.not. allocated(message)) cycle
+         call complain(plain, plain%lines(i), message, error)
+         return
+      end do
+      plain%points(1, :) = plain%points(1, :)*scale(1)
+      plain%points(2, :) = plain%points(2, :)*scale(2)
+
+   contains
+
+      !> Find the unit of a column, by its name or by the key of the case
+      subroutine find_unit(what)
+         !> `time` or `modulus`
+         character(len=*), intent(in) :: what
+
+         character(len=:), allocatable :: key, stated, unit
+
+         stated = trim(plain%units(i))
+         if (stated == 'N/mm2') stated = 'MPa'
+         call case%get('material', what//'_unit', key, item)
+         unit = stated
+         if (unit == '') unit = key
+         scale(i) = unit_size(what, unit)
+         if (stated == '' .and. key == '') then
+            call complain(plain, max(1, plain%head), 'found no unit of the '//what//', expected ' &
+               //"a first line such as 'time [s],relaxation_modulus [Pa]', or "//what//'_unit in ' &
+               //'the &material group'//plain%advice, error)
+         else if (.not. scale(i) > 0.0_wp) then
+            call complain(plain, plain%head, "found '"//stated//"' as unit of the "//what &
+               //', expected one of '//trim(merge('ns, us, ms, s, min, h', &
+               'Pa, kPa, MPa, GPa    ', what == 'time'))//plain%advice, error)
+         else if (stated /= '' .and. key /= '' .and. stated /= key) then
+            call complain(plain, plain%head, "found '"//stated//"' as unit of the "//what &
+               //', but the case has '//what//"_unit = '"//key//"': leave that out", error)
+         end if
+      end subroutine find_unit
+   end subroutine check_moduli
+
+   !> Size of a unit
+   pure function unit_size(what, unit) result(scale)
+      !> `time` or `modulus`
+      character(len=*), intent(in) :: what
+      character(len=*), intent(in) :: unit
+      !> In s or Pa; 0 if it is not known
+      real(wp) :: scale
+
+      character(len=*), parameter :: times(*) = [character(len=3) :: 'ns', 'us', 'ms', 's', 'min', &
+         'h'], moduli(*) = [character(len=3) :: 'Pa', 'kPa', 'MPa', 'GPa']
+      real(wp), parameter :: seconds(0:*) = [0.0_wp, 1.0e-9_wp, 1.0e-6_wp, 1.0e-3_wp, 1.0_wp, &
+         60.0_wp, 3600.0_wp], pascals(0:*) = [0.0_wp, 1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e9_wp]
+
+      if (what == 'time') then
+         scale = seconds(findloc(times == unit, .true., dim=1))
+      else
+         scale = pascals(findloc(moduli == unit, .true., dim=1))
+      end if
+   end function unit_size
+
+   !> Check the last point of a relaxation modulus
+   pure subroutine check_point(points, scale, lines, message)
+      !> Times and moduli in their units, shape (2, n)
+      real(wp), intent(in) :: points(:, :)
+      !> These units [s, Pa]
+      real(wp), intent(in) :: scale(2)
+      !> Their lines, shape (n)
+      integer, intent(in) :: lines(:)
       !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
-      type(header_t) :: names
+      character(len=*), parameter :: what(2) = [character(len=7) :: 'time', 'modulus']
+      integer :: i, n
 
-      if (header%lines > 0) then
-         if (content /= '') call read_units(header, content, line)
+      n = size(lines)
+      do i = 1, 2
+         associate (value => points(i, n))
+            if (value*scale(i) >= smallest_value .and. value*scale(i) <= largest_value) cycle
+            message = 'found '//real_text(value)//', expected a '//trim(what(i))//' > 0'
+            if (value > 0.0_wp) message = message//', between '//real_text(smallest_value) &
+               //' and '//real_text(largest_value)//' in units of the SI'
+            return
+         end associate
+      end do
+      if (n == 1) return
+      associate (before => points(:, n - 1), point => points(:, n))
+         if (.not. point(1) > before(1)) then
+            message = 'found time '//real_text(point(1))//' after '//real_text(before(1)) &
+               //' in line '//integer_text(lines(n - 1))//', expected times that increase'
+         else if (.not. point(2) <= before(2)*(1.0_wp + modulus_rounding)) then
+            message = 'found modulus '//real_text(point(2))//' after '//real_text(before(2)) &
+               //' in line '//integer_text(lines(n - 1))//', expected moduli that fall: a ' &
+               //'relaxation modulus never grows with time; for data with noise identify a ' &
+               //'model by vcor fit'
+         end if
+      end associate
+   end subroutine check_point
+
+   !> Check names, units and numbers of a table of shift factors; the temperatures become K and rise
+   subroutine check_shift(plain, error)
+      type(plain_t), intent(inout) :: plain
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=*), parameter :: example = ", expected a temperature and log10 of the shift " &
+         //"factor under 'temperature [K],log10_shift_factor [1]'"
+      character(len=:), allocatable :: message, unit
+      integer :: i, n
+
+      unit = trim(plain%units(1))
+      if (plain%head == 0) then
+         message = 'found numbers without names'//example//plain%advice
+      else if (.not. contains_word(temperature_names, trim(plain%names(1))) &
+               .or. .not. contains_word(shift_names, lower(trim(plain%names(2)))) &
+               .or. all(plain%units(2) /= [' ', '1'])) then
+         message = "found '"//trim(plain%names(1))//","//trim(plain%names(2))//"'"//example &
+            //plain%advice
+      else if (contains_word(celsius_names, unit) .and. unit /= '') then
+         plain%points(1, :) = plain%points(1, :) + ice_point
+      else if (unit /= kelvin_names) then
+         message = "found '"//unit//"' as unit of the temperatures, expected K or C, as in " &
+            //'temperature [C]'//plain%advice
+      end if
+      if (allocated(message)) then
+         call complain(plain, max(1, plain%head), message, error)
          return
       end if
-      call read_names(names, trim(content//comment), line)
-      if (names%count == 2 .and. contains_word('t '//temperature_names, names%columns(1)%name) &
-          .and. index(names%columns(2)%name, 'log') == 1) then
-         header = names
-      else if (content /= '') then
-         message = "found '"//shortened(content)//"'"//shift_example
-      end if
-   end subroutine take_head
-
-   !> Zero of the temperature scale of a file
-   pure subroutine find_zero(header, zero, message)
-      type(header_t), intent(in) :: header
-      !> Temperature [K]
-      real(wp), intent(out) :: zero
-      !> Message on failure, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-
-      character(len=:), allocatable :: unit
-
-      zero = 0.0_wp
-      if (header%lines == 0) return
-      unit = trim(lower(header%columns(1)%unit))
-      ! the degree sign in any encoding
-      do while (len(unit) > 1)
-         if (iachar(unit(1:1)) < 128) exit
-         unit = unit(2:)
+      do i = 1, size(plain%lines)
+         call compare_shifts(plain%points(:, :i), message)
+         if (.not. allocated(message)) cycle
+         call complain(plain, plain%lines(i), message, error)
+         return
       end do
-      if (contains_word(celsius_names, unit)) then
-         zero = ice_point
-      else if (.not. contains_word(kelvin_names, unit)) then
-         message = "found '"//shortened(trim(header%columns(1)%unit))//"' as unit of the " &
-            //'temperatures, expected K or C, as in T [K] or T [C]'
-      end if
-   end subroutine find_zero
+      n = size(plain%lines)
+      if (plain%points(1, 2) < plain%points(1, 1)) plain%points = plain%points(:, n:1:-1)
+   end subroutine check_shift
 
    !> Check that the last shift factor of a list may follow the one before
    pure subroutine compare_shifts(points, message)

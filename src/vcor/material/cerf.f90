@@ -16,8 +16,7 @@ module vcor_material_cerf
    !> Parameters of model `cerf`
    type(parameter_t), parameter :: cerf_parameters(*) = [poisson_ratio, equilibrium_modulus, &
       relaxing_modulus, &
-      parameter_t('beta', 'Square root of the rate of relaxation', 's^-1/2', positive, &
-      fitted=.true.)]
+      parameter_t('beta', 'Square root of the rate of relaxation', 's^-1/2', positive)]
 
    !> E(t) = E_0 + E_1 CERF(b sqrt(t)), Eq. (24)
    type, extends(fractional_t) :: cerf_t

@@ -18,8 +18,8 @@ module vcor_material_mittag_leffler
    type(parameter_t), parameter :: mittag_leffler_parameters(*) = [poisson_ratio, &
       equilibrium_modulus, relaxing_modulus, &
       parameter_t('exponent', 'Exponent a of the function E_a(-(t/time)^a)', '', &
-      interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp), fitted=.true.), &
-      parameter_t('time', 'Relaxation time', 's', positive, fitted=.true.)]
+      interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp)), &
+      parameter_t('time', 'Relaxation time', 's', positive)]
 
    !> E(t) = E_0 + E_1 E_a(-(t/tau)^a)
    type, extends(fractional_t) :: mittag_leffler_t

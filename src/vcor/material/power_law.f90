@@ -15,10 +15,8 @@ module vcor_material_power_law
    !> Parameters of model `power_law`
    type(parameter_t), parameter :: power_law_parameters(*) = [poisson_ratio, &
       equilibrium_modulus, &
-      parameter_t('coefficient', 'Coefficient C of C t^-a / Gamma(1-a)', 'Pa s^a', positive, &
-      fitted=.true.), &
-      parameter_t('exponent', 'Exponent a of C t^-a / Gamma(1-a)', '', between_0_and_1, &
-      fitted=.true.)]
+      parameter_t('coefficient', 'Coefficient C of C t^-a / Gamma(1-a)', 'Pa s^a', positive), &
+      parameter_t('exponent', 'Exponent a of C t^-a / Gamma(1-a)', '', between_0_and_1)]
 
    !> E(t) = E_0 + C t^-a/Gamma(1 - a), Eq. (23-b) with a = 1/2
    type, extends(fractional_t) :: power_law_t

@@ -7,7 +7,7 @@ module vcor_material_prony
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_number, only : not_negative, positive
-   use vcor_material_type, only : check_values, equilibrium_modulus, linear, material_t, &
+   use vcor_material_type, only : check_values, equilibrium_modulus, material_t, &
       parameter_t, poisson_ratio
    implicit none
    private
@@ -24,18 +24,18 @@ module vcor_material_prony
       parameter_t('modulus', "Young's modulus", 'Pa', positive)]
    !> Parameters of model `sls`
    type(parameter_t), parameter :: sls_parameters(*) = [poisson_ratio, &
-      parameter_t('glassy_modulus', 'Modulus at time zero', 'Pa', positive, fitted=.true.), &
+      parameter_t('glassy_modulus', 'Modulus at time zero', 'Pa', positive), &
       parameter_t('alpha', 'Rate; rubbery modulus = glassy_modulus*alpha/beta', '1/s', &
-      not_negative, scale=linear, fitted=.true.), &
-      parameter_t('beta', 'Rate of relaxation', '1/s', not_negative, fitted=.true.)]
+      not_negative), &
+      parameter_t('beta', 'Rate of relaxation', '1/s', not_negative)]
    !> Parameters of model `prony`; a fit determines `times`
    type(parameter_t), parameter :: prony_parameters(*) = [poisson_ratio, equilibrium_modulus, &
       parameter_t('moduli', 'Moduli of the relaxing terms', 'Pa', positive, required=.false., &
-      fitted=.true., is_list=.true.), &
+      is_list=.true.), &
       parameter_t('rates', 'Rates of the relaxing terms; or give times', '1/s', positive, &
       required=.false., is_list=.true., instead='times'), &
       parameter_t('times', 'Relaxation times of the terms; or give rates', 's', positive, &
-      required=.false., fitted=.true., is_list=.true.), &
+      required=.false., is_list=.true.), &
       parameter_t('viscosity', 'Viscosity of a dashpot in parallel', 'Pa s', not_negative, &
       required=.false., default='0.0')]
 

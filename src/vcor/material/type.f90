@@ -9,7 +9,7 @@ module vcor_material_type
    private
 
    public :: material_t
-   public :: parameter_t, check_values, power_of_time, linear, logarithmic
+   public :: parameter_t, check_values, power_of_time
    public :: density, poisson_ratio, equilibrium_modulus, relaxing_modulus
 
    !> A material. Its modulus does not change after construction, so threads can share it; before,
@@ -56,13 +56,8 @@ module vcor_material_type
       procedure :: set_constants
    end type material_t
 
-   !> Scale of a parameter that may be 0, such as a term of a sum
-   integer, parameter :: linear = 1
-   !> Scale of a parameter that is a factor
-   integer, parameter :: logarithmic = 2
-
    !> A parameter of a model, a number or a list. Each model states its parameters once, in its own
-   !> file; the keys of `&material`, the checks of its constructor and the bounds of a fit follow
+   !> file; the keys of `&material` and the checks of its constructor follow
    type :: parameter_t
       !> Name, which is the key in &material
       character(len=26) :: name = ''
@@ -76,10 +71,6 @@ module vcor_material_type
       logical :: required = .true.
       !> Default as in a namelist; blank: none
       character(len=12) :: default = ''
-      !> `linear` or `logarithmic`
-      integer :: scale = logarithmic
-      !> Whether `vcor fit` determines it
-      logical :: fitted = .false.
       !> Whether it is a list of numbers
       logical :: is_list = .false.
       !> Parameter that may be given instead, but not in addition; blank: none
@@ -97,11 +88,10 @@ module vcor_material_type
    type(parameter_t), parameter :: constants(*) = [density, poisson_ratio]
    !> Parameter of every model that may have an equilibrium modulus
    type(parameter_t), parameter :: equilibrium_modulus = parameter_t('equilibrium_modulus', &
-      'Long-time modulus', 'Pa', not_negative, required=.false., default='0.0', &
-      scale=linear, fitted=.true.)
+      'Long-time modulus', 'Pa', not_negative, required=.false., default='0.0')
    !> Parameter of the fractional models with a finite glassy modulus
    type(parameter_t), parameter :: relaxing_modulus = parameter_t('relaxing_modulus', &
-      'Part of the modulus that relaxes', 'Pa', positive, fitted=.true.)
+      'Part of the modulus that relaxes', 'Pa', positive)
 
    abstract interface
       !> A function of time

@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgesvd, dorgqr, dormqr, dpotrf, dtrtrs
+   public :: dgeev, dgeqp3, dgeqrf, dgesv, dorgqr, dormqr, dpotrf, dtrtrs
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -104,39 +104,6 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dgesv
-
-      !> Singular values and vectors of a general real matrix
-      subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
-         import :: wp
-         !> 'N': no left vectors
-         character(len=1), intent(in) :: jobu
-         !> 'S': the first min(m, n) right vectors
-         character(len=1), intent(in) :: jobvt
-         !> Number of rows
-         integer, intent(in) :: m
-         !> Number of columns
-         integer, intent(in) :: n
-         !> Leading dimension of `a`
-         integer, intent(in) :: lda
-         !> The matrix, destroyed on return, shape (lda, n)
-         real(wp), intent(inout) :: a(lda, *)
-         !> Singular values, falling, shape (min(m, n))
-         real(wp), intent(out) :: s(*)
-         !> Leading dimension of `u`
-         integer, intent(in) :: ldu
-         !> Left vectors, shape (ldu, *)
-         real(wp), intent(out) :: u(ldu, *)
-         !> Leading dimension of `vt`
-         integer, intent(in) :: ldvt
-         !> Right vectors, one to a row, shape (ldvt, n)
-         real(wp), intent(out) :: vt(ldvt, *)
-         !> Work space, shape (lwork)
-         real(wp), intent(out) :: work(*)
-         !> Length of the work space, >= max(3 min(m, n) + max(m, n), 5 min(m, n))
-         integer, intent(in) :: lwork
-         !> 0 on success
-         integer, intent(out) :: info
-      end subroutine dgesvd
 
       !> The first columns of Q of a QR factorisation
       pure subroutine dorgqr(m, n, k, a, lda, tau, work, lwork, info)

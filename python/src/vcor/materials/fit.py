@@ -2,30 +2,47 @@
 
 from __future__ import annotations
 
-import json
+import math
 import os
-from collections.abc import Mapping, Sequence
-from ctypes import c_char_p
-from dataclasses import dataclass, field
+import re
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import _library
-from .._library import InputError, numbers, whole, within
-from ..case import scalars
+from .._library import Error, Floats, InputError, UsageError, numbers, whole, within
+from .._text import document, near, printable
+from ..case import Case, Material, _written, scalars
+from .data import curves, read_data, tensile
+from .laws import LAWS, fit_law
+from .prony import MOST_TERMS, fit_series
+from .samples import Samples
+from .units import ZERO_C
 
-#: Poisson's ratio that says that there is none
-NOT_GIVEN = 1.0
-#: Most terms of a Prony series, as the program has them
-_MOST_TERMS = 60
-
-
-def ratio_of(poisson_ratio: float | None) -> float:
-    """Poisson's ratio as the library takes it, checked."""
-    return NOT_GIVEN if poisson_ratio is None else within(poisson_ratio, "--poisson-ratio", -1, 0.5)
+#: Poisson's ratio of rubber, which is incompressible
+INCOMPRESSIBLE = 0.5
+#: Models, the first one the default
+MODELS = ("prony", *LAWS)
+#: Relative change of the modulus below which it is constant
+CONSTANT = 1e-6
+#: Fall of the modulus over a decade that is none: for a series the accuracy of any data, for a law,
+#: which extrapolates, more
+FLAT_SERIES, FLAT_LAW = 5e-3, 0.1
+#: Said of the standard errors of a fit to a master curve, whose points of one temperature move
+#: together, which no misfit shows
+SHIFT_NOTE = (
+    "the standard errors leave out those of the shift factors: vcor identify fits moduli and shift "
+    "at once"
+)
+#: Case that a material is put into to be evaluated
+_CASE = """&impact velocity = 1.0 /
+&sphere radius = 1.0, mass = 1.0, material = {0} /
+&plate material = {0}, waves = 'none' /
+"""
 
 
 @dataclass(frozen=True)
@@ -39,6 +56,18 @@ class Parameter:
     error: float
     #: free, fixed (given) or bound (at the end of its range)
     state: str
+    #: Number of the term of a series, 0 for others
+    term: int = 0
+    #: `earlier` or `later`: the error holds only if the model does before or after the data
+    unseen: str = ""
+    #: Where the term of a series lies that the data cannot see: its time is before or after theirs,
+    #: or its modulus is not determined
+    hidden: str = ""
+
+    @property
+    def label(self) -> str:
+        """Name as a key of &material, with the number of its term."""
+        return f"{self.name}({self.term})" if self.term else self.name
 
 
 @dataclass(frozen=True)
@@ -54,7 +83,12 @@ class Fit:
     #: Whether the model follows the data: the misfits are noise
     follows: bool
     #: Covariance of the parameters, in their units; 0 of what is given
-    covariance: _library.Floats = field(repr=False)
+    covariance: Floats = field(repr=False)
+    model: str = field(repr=False)
+    samples: Samples = field(repr=False)
+    #: Largest relative misfit, model over data less 1, and its place among the data
+    largest: float = field(repr=False)
+    largest_place: int = field(repr=False)
     _document: dict[str, Any] = field(repr=False)
 
     def __getitem__(self, name: str) -> float | list[float]:
@@ -71,9 +105,15 @@ class Fit:
     def __str__(self) -> str:
         return self.group
 
+    @property
+    def is_open(self) -> bool:
+        """Whether the equilibrium modulus of a series is only what had not relaxed by the end."""
+        first = self.parameters[0]
+        return self.model == "prony" and first.unseen == "later" and first.error < first.value
+
 
 def fit(
-    data: str | os.PathLike[str] | Sequence[ArrayLike],
+    data: str | os.PathLike[str] | Mapping[str, ArrayLike] | Sequence[ArrayLike],
     *,
     model: str = "prony",
     terms: int | None = None,
@@ -87,7 +127,7 @@ def fit(
     Parameters
     ----------
     data
-        A data file as `vcor fit` reads it, units and kind by its header; or arrays: times [s] and
+        A data file, or its columns as `vcor.read_data` gives them; or arrays: times [s] and
         relaxation moduli [Pa], or angular frequencies [rad/s], storage and loss moduli [Pa], each
         of shape (n,).
     model
@@ -97,7 +137,7 @@ def fit(
     fix
         Parameters of the model that have a given value, in SI units.
     poisson_ratio
-        Poisson's ratio; None: 0.5. Needed for a file of shear moduli.
+        Poisson's ratio; None: 0.5. Needed for shear moduli.
     density
         Density [kg/m3], for the group of the result.
     name
@@ -117,32 +157,270 @@ def fit(
     NumericalError
         The fit fails, or the data do not determine the parameters.
     """
-    fixed = scalars(fix)
-    file: bytes | c_char_p = c_char_p()
-    samples = np.empty((0, 0))
-    if isinstance(data, (str, os.PathLike)):
-        file = os.fsencode(data)
-        name = name or Path(data).stem
+    source = "data"
+    if isinstance(data, (str, os.PathLike)) or hasattr(data, "attrs"):
+        samples, source, _ = samples_of(data, poisson_ratio)
+        name = name or Path(source).stem
     else:
-        parts = data if np.iterable(data) else []
-        columns = [numbers(part, "data", np.inf, "numbers").ravel() for part in parts]
-        if len({len(column) for column in columns}) == 1:
-            samples = np.array(columns)
-        if len(samples) not in (2, 3) or not ((samples >= 1e-30) & (samples <= 1e30)).all():
-            raise InputError(
-                "expected two or three arrays of one length with numbers > 0, from 1e-30 to 1e30: "
-                "times and moduli, or angular frequencies, storage and loss moduli"
-            )
-        samples = np.ascontiguousarray(samples[:, np.argsort(samples[0], kind="stable")])
-    given = len(fixed), _library.texts(tuple(fixed)), np.array([*fixed.values()], dtype=float)
-    count = 0 if terms is None else whole(terms, "terms", 1, _MOST_TERMS)
-    rho = 0.0 if density is None else within(density, "density", 0, 1e30)
-    wish = (model, name or "material", count, *given, ratio_of(poisson_ratio), rho)
-    document = _library.text_of("vcor_fit_data", file, *samples.shape[::-1], samples, *wish)
-    found = json.loads(document or "")
-    parameters = tuple(
-        Parameter(one["name"].partition("(")[0], *list(one.values())[1:])
-        for one in found["parameters"]
+        samples = _samples_of_arrays(data)
+    return fit_samples(
+        samples, source, model=model, terms=terms, fix=fix, poisson_ratio=poisson_ratio,
+        density=density, name=name or "material",
+    )  # fmt: skip
+
+
+def samples_of(
+    data: Any, poisson_ratio: float | None = None, *, shear: bool = False
+) -> tuple[Samples, str, list[str]]:
+    """Samples of a file or of its columns, tensile; the name of the file, and what was done."""
+    table = data if hasattr(data, "attrs") else read_data(data)
+    source, kind = str(table.attrs.get("path", "data")), table.attrs.get("kind")
+    if kind not in ("relaxation", "dynamic"):
+        raise InputError(f"{source}: expected moduli: a time and a relaxation modulus, or a "
+                         "frequency, storage and loss modulus")  # fmt: skip
+    parts = curves(tensile(table, poisson_ratio, shear=shear))
+    if len(parts) > 1:
+        places = [f"{round(one.attrs['temperature'] - ZERO_C, 2) + 0.0:g}" for one in parts]
+        raise InputError(
+            f"{source}: found {len(parts)} curves, at {', '.join(places)} C, expected one; vcor "
+            f"master {source} makes one of them, NAME_master.csv for vcor fit"
+        )
+    keys = tuple(
+        found[1].strip()
+        for line in table.attrs.get("remarks", ())
+        if (found := re.match(r"\s*&material\s+(.*=.*)", line))
     )
-    covariance = np.array(found["covariance"], dtype=float)
-    return Fit(parameters, found["group"], found["rms_misfit"], found["follows"], covariance, found)
+    names = ["storage_modulus", "loss_modulus"] if kind == "dynamic" else ["relaxation_modulus"]
+    at = parts[0]["frequency" if kind == "dynamic" else "time"].to_numpy(dtype=float)
+    moduli = parts[0][names].to_numpy(dtype=float).T
+    return Samples(at, np.ascontiguousarray(moduli), keys), source, []
+
+
+def _samples_of_arrays(data: Any) -> Samples:
+    parts = list(data.values() if hasattr(data, "values") else data) if np.iterable(data) else []
+    columns = [numbers(part, "data", np.inf, "numbers").ravel() for part in parts]
+    rows = np.array(columns) if len({len(column) for column in columns}) == 1 else np.empty((0, 0))
+    if len(rows) not in (2, 3) or not ((rows >= 1e-30) & (rows <= 1e30)).all():
+        raise InputError(
+            "expected two or three arrays of one length with numbers > 0, from 1e-30 to 1e30: "
+            "times and moduli, or angular frequencies, storage and loss moduli"
+        )
+    rows = rows[:, np.argsort(rows[0], kind="stable")]
+    return Samples(rows[0], rows[1:])
+
+
+def fit_samples(
+    samples: Samples, source: str, *, model: str = "prony", terms: int | None = None,
+    fix: Mapping[str, float] | None = None, poisson_ratio: float | None = None,
+    density: float | None = None, name: str = "material",
+) -> Fit:  # fmt: skip
+    """Fit a model to samples; errors about all of them name their source."""
+    fixed = check_fixed(model, fix)
+    count = None if terms is None else whole(terms, "terms", 1, MOST_TERMS)
+    rho = None if density is None else within(density, "density", 0, 1e30)
+    nu = INCOMPRESSIBLE
+    if poisson_ratio is not None:
+        nu = within(poisson_ratio, "--poisson-ratio", -1, INCOMPRESSIBLE)
+    if count and model != "prony":
+        raise UsageError(f"--terms is for --model prony, found --model {model}")
+    try:
+        _check(samples, model, count, fixed)
+        if model == "prony":
+            series, found = fit_series(samples, count, fixed.get("equilibrium_modulus"))
+            names = ["equilibrium_modulus", *["moduli", "times"] * len(series.times)]
+            units = ["Pa", *["Pa", "s"] * len(series.times)]
+        else:
+            _, found = fit_law(model, fixed, samples)
+            names, units = [*LAWS[model].units], [*LAWS[model].units.values()]
+    except Error as error:
+        raise type(error)(f"{source}: {error}") from None
+    rows = zip(names, units, found.values, found.errors, found.states, strict=True)
+    parameters = [
+        Parameter(key, unit, float(value), float(error), state,
+                  (i + 1) // 2 if model == "prony" else 0)
+        for i, (key, unit, value, error, state) in enumerate(rows)
+    ]  # fmt: skip
+    group, material = group_of(parameters, model, name, rho, nu, samples)
+    values = moduli_at(material, samples.at, samples.dynamic).ravel()
+    misfit = values / samples.data - 1
+    parameters = _marked(parameters, model, material, samples)
+    place = int(np.argmax(np.abs(misfit)))
+    covariance = found.correlation * np.outer(found.errors, found.errors)
+    np.fill_diagonal(covariance, found.errors**2)
+    rms = float(np.sqrt(np.mean(misfit**2)))
+    return Fit(
+        tuple(parameters), group, rms, not found.structured, covariance, model, samples,
+        float(misfit[place]), place,
+        document(
+            name=name, model=model,
+            parameters=[
+                {"name": one.label, "unit": one.unit, "value": one.value,
+                 "standard_error": one.error, "state": one.state, "seen": not one.hidden}
+                for one in parameters
+            ],
+            covariance=covariance, correlation=found.correlation, rms_misfit=rms,
+            largest_misfit=float(misfit[place]),
+            largest_misfit_at=float(samples.at[place % len(samples.at)]),
+            follows=not found.structured, note=SHIFT_NOTE if is_shifted(samples) else "",
+            band=[samples.first_time, samples.last_time], group=group,
+        ),
+    )  # fmt: skip
+
+
+def is_shifted(samples: Samples) -> bool:
+    """Whether the samples are a master curve."""
+    return any(key.startswith("shift ") for key in samples.keys)
+
+
+def check_fixed(model: str, fix: Mapping[str, float] | None) -> dict[str, float]:
+    """Values of the parameters that are given, checked."""
+    fixed = scalars(fix)
+    if not isinstance(model, str):
+        raise UsageError(f"model: found {model!r:.60}, expected a text")
+    if model not in MODELS:
+        raise UsageError(f"unknown model '{printable(model)}', known: {', '.join(MODELS)}"
+                         f"{near(model, MODELS)}")  # fmt: skip
+    law = LAWS.get(model)
+    known = [*law.units] if law else ["equilibrium_modulus"]
+    vanishing = law.vanishing if law else "equilibrium_modulus"
+    for key, value in fixed.items():
+        if key not in known:
+            raise UsageError(f"--fix: found '{printable(key)}', expected a parameter of model "
+                             f"{model}: {', '.join(known)}{near(key, known)}")  # fmt: skip
+        most = law.most_exponent if law and key == "exponent" else 1e30
+        if not (1e-30 <= value <= most or key == vanishing and value == 0):
+            sign = ">=" if key == vanishing else ">"
+            raise UsageError(f"--fix: the value of {key} is out of range, expected a number {sign} "
+                             f"0, at most {most:g}")  # fmt: skip
+    if model == "sls" and fixed.get("alpha", 0) > fixed.get("beta", math.inf):
+        raise UsageError("--fix: found alpha above beta, expected alpha <= beta: the rubbery "
+                         "modulus is glassy_modulus*alpha/beta")  # fmt: skip
+    if law and len(fixed) == len(known):
+        raise UsageError("all parameters are given: nothing is there to be fitted")
+    return fixed
+
+
+def _check(samples: Samples, model: str, terms: int | None, fixed: Mapping[str, float]) -> None:
+    """Refuse samples that cannot be fitted."""
+    unknowns = len(LAWS[model].units) if model in LAWS else 1 + 2 * (terms or 1)
+    unknowns -= len(fixed)
+    first = samples.moduli[0]
+    if samples.data.size <= unknowns:
+        raise InputError(f"found {samples.data.size} moduli, expected at least {unknowns + 1}: the "
+                         f"model has {unknowns} parameters to be found")  # fmt: skip
+    if not samples.dynamic and first.max() <= (1 + CONSTANT) * first.min():
+        raise InputError("the modulus does not change: nothing is there to be fitted, model = "
+                         "'elastic' describes it")  # fmt: skip
+    x = np.log(samples.at) * (-1 if samples.dynamic else 1)
+    if not (x - x.mean()) @ np.log(first) < 0:
+        raise InputError("the modulus does not fall with time, or rise with frequency, as that of "
+                         "a material that relaxes does")  # fmt: skip
+
+
+def moduli_at(material: Material, at: Floats, dynamic: bool) -> Floats:
+    """Relaxation, or storage and loss moduli of a material, shape (1 or 2, n)."""
+    if not dynamic:
+        return material.relaxation(at)[None]
+    found = material.complex_modulus(at)
+    return np.array([found.real, found.imag])
+
+
+def group_of(
+    parameters: Sequence[Parameter], model: str, name: str, density: float | None,
+    poisson_ratio: float, samples: Samples,
+) -> tuple[str, Material]:  # fmt: skip
+    """A &material group, each key with its unit and meaning, and the material."""
+    if not isinstance(name, str) or printable(name) != name or not name.strip():
+        raise UsageError(f"the name of the material: found {name!r:.60}, expected a text that can "
+                         "be read on one line; give another one with --name")  # fmt: skip
+    name = name.strip()
+    keys: dict[str, Any] = {"name": name, "model": model}
+    if density:
+        keys["density"] = density
+    keys["poisson_ratio"] = poisson_ratio
+    for one in parameters:
+        keys[one.name] = [*keys.get(one.name, []), one.value] if one.term else one.value
+    keys |= {"valid_from": samples.first_time, "valid_to": samples.last_time}
+    quoted = _written(name, "name")
+    try:
+        case = Case(_CASE.format(quoted) + f"&material name = {quoted} /\n")
+    except Error as error:
+        raise UsageError(f"the name of the material: {str(error).partition(': ')[2]}; give another "
+                         "one with --name") from None  # fmt: skip
+    lines = list(_lines(keys, model))
+    text = "\n".join(["&material", *lines, *(f"   {key}" for key in samples.keys), "/\n"])
+    case = Case(_CASE.format(quoted) + "\n".join(["&material", *lines, "/\n"]))
+    return text, case.material(name)
+
+
+def _lines(keys: Mapping[str, Any], model: str) -> Iterator[str]:
+    """Lines of a group."""
+    case = Case(_CASE.format("'m'") + f"&material name = 'm', model = '{model}' /\n")
+    for key, value in keys.items():
+        text = f"   {key} = {_written(value, key)}"
+        if key in ("moduli", "times"):
+            text = textwrap.fill(text, 96, subsequent_indent=" " * (len(key) + 6))
+        about = case._describe(f"m.{key}")
+        unit = f"[{about.unit}] " if about.unit not in ("", "1") else ""
+        yield f"{text:48s} ! {unit}{about.meaning}"
+
+
+def _marked(
+    parameters: Sequence[Parameter], model: str, material: Material, samples: Samples
+) -> list[Parameter]:
+    """The parameters with marks where they depend on relaxation that the data do not show.
+
+    A modulus that still falls at the end of the data continues to fall, and no datum tells how far.
+    A law extrapolates, correctly if it is the law of the material. A series does not: it adds what
+    relaxes later to its equilibrium modulus and to its slowest term. The same holds at the
+    beginning of the data. So the slope at that end decides: if the modulus would change by more
+    than its standard error over another decade, the error is valid only if the model also describes
+    the material beyond the data. The same applies to a relaxation time beyond the data.
+    """
+    flat = FLAT_SERIES if model == "prony" else FLAT_LAW
+    early, late = (
+        _fall(material, time, samples.dynamic, flat)
+        for time in (samples.first_time, samples.last_time)
+    )
+    values = {one.name: one.value for one in parameters}
+    last = parameters[-1].term
+    errors = {one.label: one.error for one in parameters}
+    found = []
+    for one in parameters:
+        unseen, hidden = "", ""
+        if one.term:
+            error = errors[f"moduli({one.term})"]
+            if one.term == 1 and early > error:
+                unseen = "earlier"
+            if one.term == last and late > error:
+                unseen = "later"
+            modulus, tau = (two.value for two in parameters if two.term == one.term)
+            if not error < modulus or not errors[f"times({one.term})"] < tau:
+                hidden = "not determined by the data"
+            elif not samples.first_time <= tau <= samples.last_time:
+                hidden = f"{'before' if tau < samples.first_time else 'after'} the data"
+        elif one.name == "equilibrium_modulus":
+            unseen = "later" if late > one.error else ""
+        elif one.name == "alpha":
+            # the rubbery modulus is glassy_modulus*alpha/beta
+            limit = values["glassy_modulus"] * one.error / values["beta"]
+            unseen = "later" if late > limit else ""
+        elif one.name in ("glassy_modulus", "relaxing_modulus"):
+            unseen = "earlier" if early > one.error else ""
+        elif model in LAWS and one.name == LAWS[model].time:
+            time = one.value ** (1 / LAWS[model].power)
+            if time < samples.first_time:
+                unseen = "earlier"
+            if time > samples.last_time:
+                unseen = "later"
+        found.append(replace(one, unseen=unseen if one.state == "free" else "", hidden=hidden))
+    return found
+
+
+def _fall(material: Material, time: float, dynamic: bool, flat: float) -> float:
+    """Fall of the modulus over a decade, from its slope; 0 if it is flat."""
+    step = 1e-3
+    times = time * np.exp([-step, step])
+    moduli = moduli_at(material, 1 / times if dynamic else times, dynamic)[0]
+    change = math.log(10) * (moduli[0] - moduli[1]) / (2 * step)
+    return float(change) if change > flat * moduli[1] else 0.0

@@ -1,10 +1,7 @@
-"""Master curves: shift factors of moduli at several temperatures, and the laws they follow.
+"""Master curves: moduli at several temperatures, shifted to one.
 
-Neighbouring temperatures are shifted along the logarithm of frequency (or minus that of time) until
-one polynomial of fourth degree goes through the storage (or relaxation) modulus of both, each
-weighted by the scatter of its own curve. The loss modulus scatters more and takes no part; in the
-figure it shows whether the same shifts bring it together, too: whether the material is
-thermorheologically simple.
+How the shift is found is in `shifting`; the loss modulus of the figure shows whether the material
+is thermorheologically simple.
 """
 
 from __future__ import annotations
@@ -12,6 +9,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import re
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,66 +17,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares, minimize_scalar
 
 from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, within
-from ..exchange.card_formats import GAS
 from .data import kelvin, read_moduli
+from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .units import ZERO_C
 
-#: Degree of the polynomial in ln E over ln omega that two curves share
-DEGREE = 4
-#: Standard errors that a shift has to be known to, to one side at least
-UNSURE = 3.0
-#: Smallest scatter of a curve that is believed, relative
-LEAST_SCATTER = 1e-3
 #: Temperature below which one in kelvin is taken for a slip [K]
 COLDEST = 100.0
 _UNITS = {"wlf_c1": "", "wlf_c2": "K", "activation_energy": "J/mol"}
-#: Largest misfit of the steps, in standard errors, of a law that stands for the table
-FOLLOWS = 2.0
 #: Difference of temperatures of which none is the next of the other [K]
 SAME = 0.1
-
-
-@dataclass(frozen=True)
-class Curve:
-    """Moduli at one temperature."""
-
-    #: Temperature [K]
-    temperature: float
-    dynamic: bool
-    #: Angular frequency [rad/s] or time [s], shape (n,)
-    at: Floats
-    #: Storage and loss modulus, or relaxation modulus [Pa], shape (1 or 2, n)
-    moduli: Floats
-
-    @property
-    def x(self) -> Floats:
-        """Logarithm of the frequency, or of one over the time, rising."""
-        return np.log(self.at) if self.dynamic else -np.log(self.at)
-
-    def scatter(self) -> float:
-        """Scatter of the logarithm of the first modulus about a parabola."""
-        y = np.log(self.moduli[0])
-        if len(y) < 5:
-            return 0.02
-        smooth = np.polyval(np.polyfit(self.x, y, 2), self.x)
-        return max(LEAST_SCATTER, float(np.sqrt(np.sum((y - smooth) ** 2) / (len(y) - 3))))
-
-
-@dataclass(frozen=True)
-class Law:
-    """A law of the shift factors, with standard errors."""
-
-    name: str
-    values: dict[str, float]
-    errors: dict[str, float]
-    #: Root of the mean square of the misfit of the steps of log10 a_T
-    rms: float
-    #: The same of the misfit in standard errors, by the degrees of freedom
-    misfit: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -95,6 +45,10 @@ class Master:
     curves: tuple[Curve, ...]
     #: What was found at pairs of temperatures whose step is that of the law
     flat: tuple[str, ...] = ()
+    #: Whether the moduli are also proportional to the temperature
+    vertical: bool = False
+    #: What was found where storage and loss moduli tell different shifts
+    apart: tuple[str, ...] = ()
 
     def curve(self) -> tuple[Floats, ...]:
         """Reduced frequency and moduli, or reduced time and modulus, in rising order.
@@ -103,29 +57,34 @@ class Master:
         """
         law, log_shift = self.law, self.log_shift
         if law:
-            log_shift = _shift(
-                list(law.values.values()), self.temperatures, self.reference_temperature
-            )
+            log_shift = law.log_shift(self.temperatures, self.reference_temperature)
         factors = 10**log_shift
         at = np.concatenate([
             one.at * factor if one.dynamic else one.at / factor
             for one, factor in zip(self.curves, factors, strict=True)
         ])  # fmt: skip
-        moduli = np.hstack([one.moduli for one in self.curves])
+        sizes = self.temperatures / self.reference_temperature if self.vertical else None
+        moduli = np.hstack([
+            one.moduli / (sizes[i] if sizes is not None else 1.0)
+            for i, one in enumerate(self.curves)
+        ])  # fmt: skip
         order = np.argsort(at, kind="stable")
         return at[order], *moduli[:, order]
 
     @property
     def law(self) -> Law | None:
-        """The law that the shift factors follow, if any."""
-        law = min(self.laws, key=lambda one: one.misfit, default=None)
+        """The law that the shift factors follow and that the data determine, if any."""
+        laws = [one for one in self.laws if one.determined]
+        law = min(laws, key=lambda one: one.misfit, default=None)
         return law if law and law.misfit < FOLLOWS else None
 
-    def keys(self, table: str) -> dict[str, str | float]:
+    def keys(self, table: str) -> dict[str, str | float | bool]:
         """Keys of a &material: the law that the shift factors follow, else their table, a file."""
-        found: dict[str, str | float] = {"shift": "table", "shift_file": table}
+        found: dict[str, str | float | bool] = {"shift": "table", "shift_file": table}
         if self.law:
             found = {"shift": self.law.name.lower(), **self.law.values}
+        if self.vertical:
+            found["vertical_shift"] = True
         return {
             **found,
             "reference_temperature": self.reference_temperature,
@@ -140,7 +99,9 @@ class Master:
             temperature=self.temperatures,
             log10_shift=self.log_shift,
             log10_shift_error=self.log_error,
-            laws=[{"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms}
+            vertical_shift=self.vertical,
+            laws=[{"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms,
+                   "determined": one.determined}
                   for one in self.laws],
         )  # fmt: skip
 
@@ -163,6 +124,11 @@ class Master:
                 for name, value in law.values.items()
             )
             lines += ["", f"{law.name}: {constants}"]
+            if not law.determined:
+                lines.append("   not determined by these data" + (
+                    f", only wlf_c1/wlf_c2 {law.ratio[0]:.4g} +- {law.ratio[1]:.2g} 1/K: the "
+                    "temperatures are too close together" if law.name == "WLF" else ""
+                ))  # fmt: skip
             if len(law.values) < len(self.temperatures) - 1 - len(self.flat):
                 lines.append(f"   misses the steps between temperatures by {law.rms:.2g} decades, "
                              f"{law.misfit:.2g} times their errors")  # fmt: skip
@@ -170,6 +136,9 @@ class Master:
                 lines.append("   fixed by these few temperatures: one more would test the law")
         if len(self.temperatures) == 2:
             lines += ["", "WLF: two constants need three temperatures, and a test of them four"]
+        lines += ["", *self.apart] if self.apart else []
+        if self.vertical:
+            lines += ["", "moduli are proportional to the temperature, too: vertical_shift"]
         if not self.law:
             lines += ["", "no law holds: a material takes the table of shift factors"]
         return "\n".join(lines) + "\n"
@@ -190,7 +159,7 @@ class Master:
             left.legend()
             t = np.linspace(self.temperatures.min(), self.temperatures.max(), 200)
             for i, law in enumerate(self.laws):
-                shift = _shift(list(law.values.values()), t, self.reference_temperature)
+                shift = law.log_shift(t, self.reference_temperature)
                 style_of = {"marker": "", "color": f"C{i + 1}", "ls": ("-", "--")[i % 2]}
                 right.plot(t - ZERO_C, shift, label=law.name, **style_of)
             right.errorbar(
@@ -229,22 +198,29 @@ def master(
     InputError
         The files have no moduli at two or more temperatures.
     NumericalError
-        Two neighbouring temperatures have no storage or relaxation modulus in common, or are too
-        flat to tell their shift and no law of the other steps does.
+        Two neighbouring temperatures have no moduli in common, or are too flat to tell their shift
+        and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     if poisson_ratio is not None:
         within(poisson_ratio, "--poisson-ratio", -1, 0.5)
     read = (one for name in names for one in read_curves(name, poisson_ratio))
+    return of_curves(list(read), str(names[0]), reference_temperature)
+
+
+def of_curves(
+    read: Sequence[Curve], source: str, reference_temperature: float | None = None
+) -> Master:
+    """Master curve of curves of a source."""
     curves = sorted(read, key=lambda one: one.temperature)
     if any(math.isnan(curve.temperature) for curve in curves):
-        raise InputError(f"{names[0]}: found no column of temperatures, expected one named T, or "
-                         f"{names[0]}@-20C for a file of one temperature")  # fmt: skip
+        raise InputError(f"{source}: found no column of temperatures, expected one named T, or "
+                         f"{source}@-20C for a file of one temperature")  # fmt: skip
     if len(curves) < 2 or len({curve.dynamic for curve in curves}) > 1:
         raise InputError("expected moduli of one kind at two or more temperatures")
     temperatures = np.array([curve.temperature for curve in curves])
     if (same := np.flatnonzero(np.diff(temperatures) < SAME)).size:
-        raise InputError(f"found two curves at {temperatures[same[0]]:.2f} K, expected one at each "
+        raise InputError(f"found two curves at {curves[same[0]].place}, expected one at each "
                          "temperature")  # fmt: skip
     if reference_temperature is None:
         middle = len(curves) // 2
@@ -256,27 +232,19 @@ def master(
             slip = slip if reference_temperature < COLDEST else ""
             raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, the "
                              f"nearest are at {temperatures[middle]:.2f} K{slip}")  # fmt: skip
-    pairs = zip(curves[:-1], curves[1:], strict=True)
-    found = [_step(*pair) for pair in pairs]
-    steps, variances = np.array([one[:2] for one in found]).T
-    steps, errors = steps / math.log(10), np.sqrt(variances) / math.log(10)
+    found, vertical = steps_of(curves)
+    steps = np.array([one.value for one in found]) / math.log(10)
+    errors = np.sqrt([one.variance for one in found]) / math.log(10)
     reference = float(temperatures[middle])
-    starts = {
-        "WLF": {"wlf_c1": 17.44, "wlf_c2": 51.6 - float(np.min(temperatures - reference))},
-        "Arrhenius": {"activation_energy": 1e5},
-    }
-    fits = (
-        _law(name, start, temperatures, steps, errors, reference) for name, start in starts.items()
-    )
-    laws = tuple(filter(None, fits))
-    told = tuple(one[2] for one in found if one[2])
+    laws = tuple(laws_of(temperatures, steps, errors, reference))
+    told = tuple(one.told for one in found if one.told)
     seen = np.isfinite(steps)
     if told:
         # in the glass, below all steps that are seen, the law of the steps above does not hold
         best = min(laws, key=lambda one: one.misfit, default=None)
         if not (seen[0] and best and best.misfit < FOLLOWS and len(best.values) < seen.sum()):
             raise NumericalError(f"{told[0]}; expected data without one of the two")
-        law = _shift(list(best.values.values()), temperatures, reference)
+        law = best.log_shift(temperatures, reference)
         steps = np.where(seen, steps, np.diff(law))
     shift, variance, unseen = (
         np.concatenate([[0.0], np.cumsum(one)])
@@ -290,6 +258,8 @@ def master(
         laws,
         tuple(curves),
         told,
+        vertical,
+        tuple(one.apart for one in found if one.apart),
     )
 
 
@@ -303,85 +273,10 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float | None = None
         names = ["storage_modulus", "loss_modulus"] if dynamic else ["relaxation_modulus"]
         at = data["frequency" if dynamic else "time"].to_numpy()
         temperature = data.attrs["temperature"]
-        found.append(Curve(temperature, dynamic, at, data[names].to_numpy().T.copy()))
+        given = str(data.attrs["names"].get("temperature", name))
+        celsius = re.search(r"(?i)K\W*$|kelvin", given) is None
+        found.append(Curve(temperature, dynamic, at, data[names].to_numpy().T.copy(), celsius))
     return found
-
-
-def _step(cold: Curve, warm: Curve) -> tuple[float, float, str]:
-    """Change of ln a_T from the colder to the warmer curve, its variance, and why they are nan."""
-    y = np.log(np.concatenate([cold.moduli[0], warm.moduli[0]]))
-    weight = 1 / np.repeat([cold.scatter(), warm.scatter()], [len(cold.at), len(warm.at)])
-    middle, span = np.mean(cold.x), np.ptp(cold.x) + np.ptp(warm.x)
-
-    def misfit(shift: float) -> float:
-        """Weighted sum of squares about one polynomial through both curves."""
-        x = (np.concatenate([cold.x, warm.x + shift]) - middle) / span
-        q = np.linalg.qr(np.vander(x, DEGREE + 1) * weight[:, None])[0]
-        rest = y * weight
-        return float(np.sum((rest - q @ (q.T @ rest)) ** 2))
-
-    # a warmer material is faster: its curve belongs to lower frequencies of the colder one, beside
-    # which it may end
-    trials = np.linspace(cold.x[0] - warm.x[-1], 0.1 * span, 301)
-    values = np.array([misfit(trial) for trial in trials])
-    best = int(np.argmin(values))
-    dof = max(1, y.size - DEGREE - 2)
-    pair = (f"the {'storage' if cold.dynamic else 'relaxation'} moduli at {cold.temperature:.2f} "
-            f"and {warm.temperature:.2f} K")  # fmt: skip
-    if max(values[0], values[-1]) < values[best] + UNSURE**2 * max(values[best] / dof, 1.0):
-        told = f"{pair} are too flat for their scatter to tell the shift between them"
-        return math.nan, math.nan, told
-    if best in (0, len(trials) - 1):
-        raise NumericalError(
-            f"{pair} have none in common, by which alone they are shifted; expected more "
-            f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
-        )
-    h = trials[1] - trials[0]
-    found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
-                            options={"xatol": 1e-8})  # fmt: skip
-    curvature = (misfit(found.x + h) + misfit(found.x - h) - 2 * found.fun) / h**2
-    return float(found.x), float(2 * max(found.fun / dof, 1.0) / curvature), ""
-
-
-def _shift(values: Sequence[float] | Floats, t: Floats, reference: float) -> Floats:
-    """log10 a_T by the constants of a law: two of WLF, or one of Arrhenius."""
-    shift: Floats
-    if len(values) == 2:
-        shift = -values[0] * (t - reference) / (values[1] + t - reference)
-    else:
-        shift = values[0] / GAS / math.log(10) * (1 / t - 1 / reference)
-    return shift
-
-
-def _law(
-    name: str, start: dict[str, float], temperatures: Floats, steps: Floats, errors: Floats,
-    reference: float,
-) -> Law | None:  # fmt: skip
-    """A law by least squares of the steps, whose errors are independent; None: too few.
-
-    Steps that are nan are left out.
-    """
-    seen = np.isfinite(steps)
-
-    def misfit(x: Floats) -> Floats:
-        rest: Floats = (np.diff(_shift(np.exp(x), temperatures, reference)) - steps) / errors
-        return rest[seen]
-
-    dof = int(seen.sum()) - len(start)
-    if dof < 0:
-        return None
-    found = least_squares(misfit, np.log(list(start.values())), max_nfev=500)
-    values = np.exp(found.x)
-    if name == "WLF" and values[1] + float(np.min(temperatures - reference)) <= 0:
-        return None
-    square = 2 * found.cost / max(dof, 1)
-    variances = np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * max(1.0, square)
-    deviations = values * np.sqrt(variances)
-    rms = float(np.sqrt(np.mean((misfit(found.x) * errors[seen]) ** 2)))
-    constants, deviations = (
-        dict(zip(start, one.tolist(), strict=True)) for one in (values, deviations)
-    )
-    return Law(name, constants, deviations, rms, math.sqrt(square))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -417,7 +312,7 @@ def _work(options: argparse.Namespace) -> None:
     reference = found.reference_temperature
     stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
     shift = found.keys(f"{stem}_shift.csv").items()
-    pairs = [f"{key} = {x!r}" if isinstance(x, str) else f"{key} = {x:.9g}" for key, x in shift]
+    pairs = [f"{key} = {_value(x)}" for key, x in shift]
     keys = "".join(f"# &material {pair}\n" for pair in pairs)
     texts = {
         ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n" + _rows(found.curve()),
@@ -435,3 +330,10 @@ def _work(options: argparse.Namespace) -> None:
 def _rows(columns: Sequence[Floats]) -> str:
     """Columns as rows of text."""
     return "".join(",".join(f"{x:.9g}" for x in row) + "\n" for row in zip(*columns, strict=True))
+
+
+def _value(value: str | float | bool) -> str:
+    """A value as a namelist has it."""
+    if isinstance(value, bool):
+        return ".true." if value else ".false."
+    return repr(value) if isinstance(value, str) else f"{value:.9g}"

@@ -1,0 +1,191 @@
+"""Moduli that a material is fitted to, and what their misfits say."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .._library import Floats, NumericalError
+
+#: Condition of the scaled derivatives above which parameters are not determined: a change of the
+#: data by 1e-7 would leave them no common digit
+WORST_CONDITION = 1e7
+#: Root mean square misfit below the accuracy of any data, and one too large for noise of any kind
+NEGLIGIBLE, TOO_LARGE = 5e-3, math.log(2)
+#: Standard deviations above the mean that one fit of a thousand exceeds by chance
+SIGNIFICANT = 3.1
+#: Fewest residuals in excess of the parameters for a correlation to be significant
+LEAST_EXCESS = 5
+#: Distance from the end of a range, in a variable, within which it is tried whether it is reached
+BESIDE = 1e-3
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Relaxation moduli over time, or storage and loss moduli over angular frequency."""
+
+    #: Times [s] or angular frequencies [rad/s], rising, shape (n,)
+    at: Floats
+    #: Relaxation, or storage and loss moduli [Pa], shape (1 or 2, n)
+    moduli: Floats
+    #: Further keys of the &material group
+    keys: tuple[str, ...] = ()
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether they are storage and loss moduli."""
+        return len(self.moduli) == 2
+
+    @property
+    def data(self) -> Floats:
+        """All moduli in one row [Pa]."""
+        return self.moduli.ravel()
+
+    @property
+    def first_time(self) -> float:
+        """First time, or reciprocal of the largest frequency [s]."""
+        return float(1 / self.at[-1] if self.dynamic else self.at[0])
+
+    @property
+    def last_time(self) -> float:
+        """Last time, or reciprocal of the smallest frequency [s]."""
+        return float(1 / self.at[0] if self.dynamic else self.at[-1])
+
+    @property
+    def softest(self) -> float:
+        """Smallest relaxation or storage modulus [Pa]."""
+        return float(self.moduli[0].min())
+
+    @property
+    def ones(self) -> Floats:
+        """Moduli of an equilibrium modulus of 1 Pa."""
+        return np.repeat([1.0, 0.0][: len(self.moduli)], len(self.at))
+
+    def logs(self, moduli: Floats) -> Floats:
+        """Residuals: logarithms of moduli over the data."""
+        rest: Floats = np.log(np.maximum(moduli, 1e-200) / self.data)
+        return rest
+
+
+class Problem:
+    """Residuals over variables with limits, which the fits of laws and of series have in common."""
+
+    samples: Samples
+    low: Floats
+    high: Floats
+
+    def residuals(self, x: Floats) -> Floats:
+        """Logarithms of model over data, shape (m,)."""
+        raise NotImplementedError
+
+    def jacobian(self, x: Floats) -> Floats:
+        """Their derivatives, shape (m, n)."""
+        raise NotImplementedError
+
+    def minimize(
+        self, x: Floats, tolerance: float = 1e-14, most: int = 400
+    ) -> tuple[Floats, float, bool]:
+        """Least squares from x; the point, the sum of squares, and whether it has converged."""
+        if not len(x):
+            return x, float(np.sum(self.residuals(x) ** 2)), True
+        with np.errstate(over="ignore", under="ignore"):
+            found = least_squares(
+                self.residuals, np.clip(x, self.low + 1e-9, self.high - 1e-9), self.jacobian,
+                bounds=(self.low, self.high), x_scale="jac", ftol=max(tolerance, 1e-15),
+                xtol=max(1e-3 * tolerance, 1e-13), gtol=1e-15, max_nfev=most,
+            )  # fmt: skip
+        return found.x, 2 * found.cost, found.status > 0
+
+    def scatter(self, points: Floats, r: Floats, free: Floats) -> tuple[Floats, float, bool]:
+        """Standard errors of the variables at a solution, over that of a residual, and the rest.
+
+        Variables at a bound are unknowns like the others, so that the errors of the others allow
+        for their possible values; they take no part in the variance.
+
+        Parameters
+        ----------
+        points
+            Derivatives, shape (m, n).
+        r
+            Residuals, shape (m,).
+        free
+            Which variables are at no bound, shape (n,).
+
+        Returns
+        -------
+        Floats, float, bool
+            Covariance of the variables over the variance of a residual, this variance, and whether
+            the residuals are too much alike for noise.
+        """
+        inner = points[:, free]
+        if condition(inner) > WORST_CONDITION:
+            raise NumericalError("the data do not determine all parameters")
+        variance = float(r @ r) / max(1, len(r) - inner.shape[1])
+        told = math.sqrt(r @ r / len(r)) > TOO_LARGE
+        return covariance(points), variance, told or is_structured(r, inner, len(self.samples.at))
+
+
+def condition(derivatives: Floats) -> float:
+    """Condition number of derivatives by parameters, each scaled to length 1."""
+    if not derivatives.size:
+        return 1.0
+    values = np.linalg.svd(derivatives / np.linalg.norm(derivatives, axis=0), compute_uv=False)
+    return float(values[0] / max(values[-1], 1e-300))
+
+
+def covariance(derivatives: Floats) -> Floats:
+    """Inverse of the products of derivatives, shape (n, n)."""
+    lengths = np.maximum(np.linalg.norm(derivatives, axis=0), 1e-300)
+    _, values, vectors = np.linalg.svd(derivatives / lengths, full_matrices=False)
+    values = np.maximum(values, 1e-15 * values.max(initial=1e-300))
+    found: Floats = (vectors.T / values**2) @ vectors / np.outer(lengths, lengths)
+    return (found + found.T) / 2
+
+
+def is_structured(r: Floats, derivatives: Floats, points: int) -> bool:
+    """Whether neighbouring residuals are correlated too much for noise.
+
+    Noise is independent from point to point, while a wrong model errs in the same direction over
+    many. So the test uses not the size of the residuals but their correlation with the next one,
+    rho = sum r_i r_(i+1)/sum r_i^2, in order of time or frequency. For noise it would be 0, but the
+    fit has removed from the residuals the smooth part that its p parameters could follow. Let
+    r = M e with independent noise e of one variance and the projection M orthogonal to the
+    derivatives, and let A r be the mean of the two neighbours, so rho = r'A r/r'r. Then rho has the
+    mean tr(MA)/n and the variance 2 (tr(MAMA) - tr(MA)^2/n)/(n (n + 2)), n = m - p, for any number
+    m of points (Durbin and Watson, Biometrika 37 (1950) 409, doi:10.1093/biomet/37.3-4.409).
+
+    Parameters
+    ----------
+    r
+        Residuals, one or two sequences in turn, shape (m,).
+    derivatives
+        By the free parameters, of full rank, shape (m, p).
+    points
+        Length of a sequence.
+    """
+    m, p = derivatives.shape
+    if m < p + LEAST_EXCESS or math.sqrt(r @ r / m) <= NEGLIGIBLE:
+        return False
+
+    def neighbours(columns: Floats) -> Floats:
+        """Mean of the two neighbours of each number; a missing one counts as 0."""
+        means = np.zeros_like(columns)
+        for i in range(0, m, points):
+            means[i : i + points - 1] += columns[i + 1 : i + points] / 2
+            means[i + 1 : i + points] += columns[i : i + points - 1] / 2
+        return means
+
+    q = np.linalg.qr(derivatives)[0]
+    aq = neighbours(q)
+    g = q.T @ aq
+    sequences, n = m // points, m - p
+    mean = -np.trace(g) / n
+    square = 0.5 * (m - sequences) - 2 * np.sum(aq**2) + np.sum(g**2)
+    rho = r @ neighbours(r) / (r @ r)
+    # storage and loss modulus may share their noise, or one has nearly all of it: in both cases the
+    # variance is that of one sequence
+    deviation = math.sqrt(max(0.0, sequences * 2 * (square - n * mean**2) / (n * (n + 2))))
+    return bool(rho - mean > SIGNIFICANT * deviation)

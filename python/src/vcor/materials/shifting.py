@@ -1,0 +1,261 @@
+"""Shift factors of moduli at several temperatures, and the laws they follow.
+
+Neighbouring temperatures are shifted along the logarithm of frequency (or minus that of time) until
+one polynomial of fourth degree goes through both curves of each modulus. Storage and loss modulus
+of a curve count by the covariance of their scatter, and so does the loss tangent, their ratio:
+where they scatter together it is known better than either. A storage modulus that is flat says
+nothing about the shift; the loss modulus of a rubber does.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares, minimize_scalar
+
+from .._library import Floats, NumericalError
+from ..exchange.card_formats import GAS
+from .units import ZERO_C
+
+#: Degree of the polynomial over the logarithm of frequency that two curves share
+DEGREE = 4
+#: Standard errors by which a shift has to differ from one that makes the warmer material slower
+UNSURE = 3.0
+#: Smallest scatter of a curve that is believed, and that of one of few points, relative
+LEAST_SCATTER, FEW_SCATTER = 1e-3, 0.02
+#: Largest misfit of the steps, in standard errors, of a law that stands for the table
+FOLLOWS = 2.0
+#: Standard errors of the shift of the storage moduli within which the loss moduli have to agree
+AGREE = 3.0
+#: Relative standard error from which on a constant of a law is not determined
+UNDETERMINED = 1 / 3
+#: Reduction of the sum of squares, in variances, from which on moduli follow the temperature
+VERTICAL = 9.0
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Moduli at one temperature."""
+
+    #: Temperature [K]
+    temperature: float
+    dynamic: bool
+    #: Angular frequency [rad/s] or time [s], shape (n,)
+    at: Floats
+    #: Storage and loss modulus, or relaxation modulus [Pa], shape (1 or 2, n)
+    moduli: Floats
+    #: Whether the temperature is given in degrees Celsius
+    celsius: bool = True
+
+    @property
+    def x(self) -> Floats:
+        """Logarithm of the frequency, or of one over the time, rising."""
+        return np.log(self.at) if self.dynamic else -np.log(self.at)
+
+    @property
+    def storage(self) -> Curve:
+        """The first modulus alone."""
+        return dataclasses.replace(self, moduli=self.moduli[:1])
+
+    @property
+    def place(self) -> str:
+        """The temperature as it was given."""
+        if self.celsius:
+            return f"{round(self.temperature - ZERO_C, 2) + 0.0:g} C"
+        return f"{self.temperature:.2f} K"
+
+    def whitening(self) -> Floats:
+        """What makes the scatter of the logarithms of the moduli that of independent numbers of 1.
+
+        The scatter is that about parabolas.
+        """
+        y, unit = np.log(self.moduli), np.eye(len(self.moduli))
+        if len(self.at) < 5:
+            return unit / FEW_SCATTER
+        rest = y - np.array([np.polyval(np.polyfit(self.x, row, 2), self.x) for row in y])
+        covariance = rest @ rest.T / (len(self.at) - 3) + LEAST_SCATTER**2 * unit
+        found: Floats = np.linalg.inv(np.linalg.cholesky(covariance))
+        return found
+
+
+@dataclass(frozen=True)
+class Step:
+    """Change of ln a_T from a colder to a warmer curve."""
+
+    #: nan if the curves do not determine it
+    value: float = math.nan
+    variance: float = math.nan
+    #: Weighted sum of squares, and its degrees of freedom
+    squares: float = 0.0
+    dof: int = 0
+    #: Why there is none
+    told: str = ""
+    #: Said where storage and loss moduli do not agree
+    apart: str = ""
+
+
+def step_between(cold: Curve, warm: Curve, vertical: bool = False) -> Step:
+    """The step between neighbours; with `vertical` moduli are proportional to the temperature.
+
+    Storage and loss modulus together, unless the storage moduli tell another shift: the loss moduli
+    of a glass are often those of the instrument. Where the storage moduli are too flat, the step
+    has to differ from none.
+    """
+    if not cold.dynamic:
+        return _step(cold, warm, vertical)
+    try:
+        both = _step(cold, warm, vertical)
+    except NumericalError as error:
+        both = Step(told=str(error))
+    known = not both.told and both.value < -2 * math.sqrt(both.variance)
+    try:
+        storage = _step(cold.storage, warm.storage, vertical)
+    except NumericalError:
+        if not known:
+            raise
+        return both
+    if storage.told:
+        return both if known else storage
+    if both.told or abs(both.value - storage.value) > AGREE * math.sqrt(storage.variance):
+        both = storage
+    if both is storage:
+        pair = f"the loss moduli at {cold.place} and {warm.place}"
+        said = "tell another shift than the storage moduli, by which alone they are shifted"
+        return dataclasses.replace(storage, apart=f"{pair} {said}")
+    return both
+
+
+def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
+    """The step by all moduli of the curves."""
+    up = math.log(warm.temperature / cold.temperature) if vertical else 0.0
+    middle, span = np.mean(cold.x), np.ptp(cold.x) + np.ptp(warm.x)
+    degree = min(DEGREE, (len(cold.at) + len(warm.at)) // 2 - 1)
+    weights = cold.whitening(), warm.whitening()
+    moduli = np.log(cold.moduli), np.log(warm.moduli) - up
+    y = np.concatenate([(w @ one).ravel() for w, one in zip(weights, moduli, strict=True)])
+
+    def misfit(shift: float) -> float:
+        """Weighted sum of squares about polynomials through both curves."""
+        bases = (np.vander((x - middle) / span, degree + 1) for x in (cold.x, warm.x + shift))
+        rows = [np.kron(w, basis) for w, basis in zip(weights, bases, strict=True)]
+        q = np.linalg.qr(np.concatenate(rows))[0]
+        return float(np.sum((y - q @ (q.T @ y)) ** 2))
+
+    # a warmer material is faster: its curve belongs to lower frequencies of the colder one, beside
+    # which it may end
+    trials = np.linspace(cold.x[0] - warm.x[-1], 0.1 * span, 301)
+    values = np.array([misfit(trial) for trial in trials])
+    best = int(np.argmin(values))
+    dof = max(1, len(y) - len(cold.moduli) * (degree + 1) - 1)
+    kind = "storage" if cold.dynamic else "relaxation"
+    pair = f"the {kind} moduli at {cold.place} and {warm.place}"
+    noise = max(values[best] / dof, 1.0)
+    if values[-1] < values[best] + UNSURE**2 * noise:
+        told = f"{pair} are too flat for their scatter to tell the shift between them"
+        return Step(told=told + ", and so are the loss moduli" * cold.dynamic)
+    if best in (0, len(trials) - 1):
+        raise NumericalError(
+            f"{pair} have none in common, by which alone they are shifted; expected more "
+            f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
+        )
+    h = trials[1] - trials[0]
+    found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
+                            options={"xatol": 1e-8})  # fmt: skip
+    curvature = (misfit(found.x + h) + misfit(found.x - h) - 2 * found.fun) / h**2
+    noise = max(found.fun / dof, 1.0)
+    return Step(float(found.x), float(2 * noise / curvature), float(found.fun), dof)
+
+
+def steps_of(curves: Sequence[Curve]) -> tuple[list[Step], bool]:
+    """Steps between neighbours, and whether the moduli are proportional to the temperature too."""
+    pairs, found, refused = list(zip(curves[:-1], curves[1:], strict=True)), [], []
+    for vertical in (False, True):
+        try:
+            found.append([step_between(*pair, vertical) for pair in pairs])
+        except NumericalError as error:
+            refused.append((error, vertical))
+    if len(refused) == 2:
+        raise refused[0][0]
+    if refused:
+        return found[0], not refused[0][1]
+    plain, shifted = found
+    both = [pair for pair in zip(plain, shifted, strict=True) if not (pair[0].told or pair[1].told)]
+    squares = [sum(pair[i].squares for pair in both) for i in (0, 1)]
+    noise = max(1.0, squares[1] / max(1, sum(pair[1].dof for pair in both)))
+    vertical = bool(both) and squares[0] > squares[1] + VERTICAL * noise
+    return (shifted if vertical else plain), vertical
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law of the shift factors, with standard errors."""
+
+    name: str
+    values: dict[str, float]
+    errors: dict[str, float]
+    #: Root of the mean square of the misfit of the steps of log10 a_T
+    rms: float
+    #: The same of the misfit in standard errors, by the degrees of freedom
+    misfit: float = math.inf
+    #: Ratio of the constants of WLF [1/K] and its standard error, which is known better than they
+    ratio: tuple[float, float] = (math.nan, math.nan)
+
+    @property
+    def determined(self) -> bool:
+        """Whether the data determine the constants."""
+        return all(self.errors[key] < UNDETERMINED * one for key, one in self.values.items())
+
+    def log_shift(self, t: Floats, reference: float) -> Floats:
+        """log10 a_T at temperatures [K]."""
+        return log_shift(list(self.values.values()), t, reference)
+
+
+def log_shift(values: Sequence[float] | Floats, t: Floats, reference: float) -> Floats:
+    """log10 a_T by the constants of a law: two of WLF, or one of Arrhenius."""
+    shift: Floats
+    if len(values) == 2:
+        shift = -values[0] * (t - reference) / (values[1] + t - reference)
+    else:
+        shift = values[0] / GAS / math.log(10) * (1 / t - 1 / reference)
+    return shift
+
+
+def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: float) -> list[Law]:
+    """Laws by least squares of the steps of log10 a_T, whose errors are independent.
+
+    Steps that are nan are left out, and laws with more constants than there are steps.
+    """
+    seen, found = np.isfinite(steps), []
+    starts = {
+        "WLF": {"wlf_c1": 17.44, "wlf_c2": 51.6 - float(np.min(temperatures - reference))},
+        "Arrhenius": {"activation_energy": 1e5},
+    }
+    for name, start in starts.items():
+        if seen.sum() < len(start):
+            continue
+
+        def misfit(x: Floats) -> Floats:
+            law: Floats = np.diff(log_shift(np.exp(x), temperatures, reference))
+            return ((law - steps) / errors)[seen]
+
+        best = least_squares(misfit, np.log(list(start.values())), max_nfev=500)
+        values = np.exp(best.x)
+        if name == "WLF" and values[1] + float(np.min(temperatures - reference)) <= 0:
+            continue
+        square = 2 * best.cost / max(int(seen.sum()) - len(start), 1)
+        covariance = np.linalg.pinv(best.jac.T @ best.jac) * max(1.0, square)
+        constants, deviations = (
+            dict(zip(start, one.tolist(), strict=True))
+            for one in (values, values * np.sqrt(np.diag(covariance)))
+        )
+        rms = float(np.sqrt(np.mean((misfit(best.x) * errors[seen]) ** 2)))
+        ratio = (math.nan, math.nan)
+        if name == "WLF":
+            spread = covariance[0, 0] + covariance[1, 1] - 2 * covariance[0, 1]
+            ratio = values[0] / values[1], values[0] / values[1] * math.sqrt(max(spread, 0.0))
+        found.append(Law(name, constants, deviations, rms, math.sqrt(square), ratio))
+    return found
