@@ -1,13 +1,12 @@
 !> Parses the command line into a request
 module vcor_app_cli
-   use, intrinsic :: iso_fortran_env, only : int8
    use vcor_app_commands, only : commands, missing_package, options_of, package_names
    use vcor_number, only : read_real
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : time_range_t
-   use vcor_io_seal, only : crc32
-   use vcor_sweep_part, only : most_threads
+   use vcor_io_restart, only : crc32
+   use vcor_sweep_points, only : most_threads
    use vcor_text, only : control_in, integer_text, name_flaw, printable
    use vcor_words, only : contains_word, join_words, suggestion
    implicit none
@@ -35,8 +34,6 @@ module vcor_app_cli
       integer :: threads = 0
       !> Whether to continue with existing results
       logical :: resume = .false.
-      !> Index and number of shards; 0 without --shard
-      integer :: shard = 0, shards = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
       !> Whether to print only requested numbers
@@ -44,6 +41,10 @@ module vcor_app_cli
       !> Whether help prints JSON
       logical :: json = .false.
    end type request_t
+
+   !> What takes the place of shards
+   character(len=*), parameter :: instead = 'expected mpirun -n N vcor run CASE.nml, or a pool ' &
+      //'of the Python package (docs/distributed.md)'
 
 contains
 
@@ -73,7 +74,7 @@ contains
       counts = .true.
       do i = 1, size(words)
          if (counts .and. index(words(i)%text, '--threads') /= 1) &
-            sum = crc32(transfer(words(i)%text//achar(0), [0_int8]), sum)
+            sum = crc32(words(i)%text//achar(0), sum)
          counts = words(i)%text /= '--threads'
       end do
    end function sum_of_words
@@ -109,7 +110,7 @@ contains
 
       allocate (request%files(0), request%settings(0), request%names(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, merge, check, material, ' &
+         call raise(error, error_usage, 'no command; known: run, check, material, ' &
             //'verify, help (vcor help says more)')
          return
       end if
@@ -123,6 +124,7 @@ contains
       if (request%command == '--help' .or. request%command == '-h') request%command = 'help'
       if (.not. contains_word(commands(), request%command)) then
          name = missing_package(request%command)
+         if (request%command == 'merge') name = 'vcor merge and --shard have gone; '//instead
          if (name == '') name = "unknown command '"//printable(request%command)//"'; " &
             //suggestion(request%command, commands()//' '//package_names()//' --help --version')
          call raise(error, error_usage, name)
@@ -153,6 +155,10 @@ contains
          ! --option=value; otherwise the value is the next word
          mark = index(name, '=')
          if (mark > 0) name = name(:mark - 1)
+         if (request%command == 'run' .and. name == '--shard') then
+            call raise(error, error_usage, '--shard has gone; '//instead)
+            return
+         end if
          if (.not. contains_word(options_of(request%command), name)) then
             call raise(error, error_usage, "unknown option '"//printable(name)//"' of " &
                //request%command//'; '//suggestion(name, options_of(request%command)))
@@ -214,8 +220,6 @@ contains
          call read_name(option, value, request%directory, error)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
-      case ('--shard')
-         call read_shard(value, request, error)
       case ('--points')
          call read_whole(option, value, 2, most_points, request%range%points, error)
       case ('--from')
@@ -252,8 +256,6 @@ contains
          select case (request%command)
          case ('help')
             continue
-         case ('merge')
-            call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
          case default
             ! verify requires a case only if there are settings
             if (request%command /= 'verify' .or. size(request%settings) > 0) &
@@ -261,8 +263,6 @@ contains
                //' CASE.nml')
          end select
       end if
-      if (request%shards > 0 .and. size(request%names) > 0) call raise(error, error_usage, &
-         '--print is for whole sweeps, found --shard as well')
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
@@ -270,27 +270,6 @@ contains
          call raise(error, error_usage, "help --json takes no topic, found '" &
          //printable(request%files(1)%text)//"'")
    end subroutine check_request
-
-   !> Read the value of --shard, I/N
-   subroutine read_shard(value, request, error)
-      character(len=*), intent(in) :: value
-      type(request_t), intent(inout) :: request
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      integer, parameter :: most_shards = 1000000
-      integer :: mark
-
-      mark = index(value, '/')
-      if (mark == 0) then
-         call raise(error, error_usage, "--shard: found '"//printable(trim(value)) &
-            //"', expected I/N: shard I of N, as in --shard 1/4")
-         return
-      end if
-      call read_whole('--shard', value(mark + 1:), 1, most_shards, request%shards, error)
-      if (allocated(error)) return
-      call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
-   end subroutine read_shard
 
    !> Read the names of --print, which are checked with the case, as they may be swept parameters
    subroutine add_names(list, request)

@@ -38,15 +38,15 @@ module vcor_app_commands
       //"the table, and write files only if `--output` is given. A name is a column " &
       //"(`vcor help output`) or a swept parameter"), &
       entry_t("--threads N", "threads of a sweep; default: one per core"), &
-      entry_t("--resume", "continue an interrupted sweep"), &
-      entry_t("--shard I/N", "solve part I of N of a sweep and write it to " &
-      //"STEM_shard_I_of_N.h5; `vcor merge` joins the parts"), &
+      entry_t("--resume", "continue an interrupted sweep, and delete what it has left half " &
+      //"written"), &
       entry_t("--quiet", "print nothing but the numbers of `--print`; warnings go to stderr"), &
-      entry_t("", "A sweep that takes longer than a moment saves the finished points in " &
-      //"STEM.part.h5, which is a valid HDF5 file at any time. Ctrl-C (SIGINT) and SIGTERM end " &
-      //"the sweep after the points in progress, with exit code 130 or 143. The same command " &
-      //"with `--resume` continues it, also after a crash, and writes the same files as an " &
-      //"uninterrupted run. A STEM.part.h5 of another case or version is refused."), &
+      entry_t("", "A sweep that takes longer than a second keeps the finished points in " &
+      //"STEM.part, a text file. When the sweep is killed (Ctrl-C, SIGTERM, SIGKILL) or " &
+      //"the disk is full, the same command with `--resume` solves the points that " &
+      //"remain, and writes the same files as an uninterrupted run. Without `--resume` a " &
+      //"sweep that has a STEM.part does not start. A STEM.part of another case or " &
+      //"version is refused."), &
       entry_t("", "The screen names the mechanics of an impact and, if they are not exact, shows " &
       //"the result of the exact ones (law 'receding', pair 'series', and waves 'body' where the " &
       //"case has waves, or a thickness and a free plate). It lists the measures of validity " &
@@ -54,24 +54,14 @@ module vcor_app_commands
       //"for a sweep, how many points that concerns, by which measure, and where. With " &
       //"`--print`, one line on stderr lists them. Numbers that no material has (a density of " &
       //"7.8 kg/m3) cause a warning."), &
-      entry_t("", "Finished results of another case are replaced, with a message. Unfinished " &
-      //"results of another case are never replaced."), &
+      entry_t("", "Results of the same names are replaced. A file is written as NAME.tmp and " &
+      //"then renamed, so there is always the old file or the new one. A NAME.tmp that exists " &
+      //"belongs to another vcor at work, or to a killed one, and is not touched without " &
+      //"`--resume`."), &
       entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &
       //"among ranks."), &
       entry_t("example", "vcor run examples/paper/sls.nml"), &
       entry_t("example", "vcor run examples/paper/sls.nml --set impact.velocity=2.5 --print cor"), &
-      !
-      entry_t("command", "merge"), &
-      entry_t("usage", "vcor merge STEM_shard_*.h5 [options]"), &
-      entry_t("summary", "join the shards of a sweep"), &
-      entry_t("", "Joins the files that `vcor run --shard I/N` has written and makes " &
-      //"STEM_summary.csv and STEM.h5, the same files as one run makes. All N shards are needed, " &
-      //"each once, finished, and of the same case and version. The exit code is 5 if a point " &
-      //"has no result, as for run."), &
-      entry_t("--output DIR", "folder of the files; created if it does not exist; default: the " &
-      //"folder of the case"), &
-      entry_t("--quiet", "print nothing"), &
-      entry_t("example", "vcor merge sls_velocity_shard_*_of_8.h5"), &
       !
       entry_t("command", "check"), &
       entry_t("usage", "vcor check CASE.nml ... [options]"), &

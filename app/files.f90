@@ -1,27 +1,22 @@
-!> The files of a case: their names, previous results in their place, and writing them; and the
+!> The files of a case: their names, what a killed run has left there, and writing them; and the
 !> plain numbers of `--print`
 module vcor_app_files
-   use, intrinsic :: iso_fortran_env, only : error_unit, int64
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : request_t
    use vcor_case_case, only : case_t
    use vcor_case_grid, only : grid_t
-   use vcor_error, only : error_file, error_t, error_usage, raise
+   use vcor_error, only : error_t, error_usage, raise
    use vcor_io_csv, only : write_csv, write_rows
-   use vcor_io_file, only : write_stdout
+   use vcor_io_file, only : raise_taken, remove_file, temporary_name
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, reader_t
-   use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
-   use vcor_io_path, only : directory_exists, folder_of, join_path, make_directory, &
-      plain_file_exists, quoted_path
+   use vcor_io_path, only : anything_at, directory_exists, folder_of, join_path, make_directory
+   use vcor_io_restart, only : raise_unfinished
    use vcor_io_table, only : place_in_table, table_t
-   use vcor_sweep_part, only : new_part, part_t
-   use vcor_sweep_quantity, only : quantities
-   use vcor_text, only : integer_text, name_flaw, printable
+   use vcor_text, only : name_flaw, printable
    implicit none
    private
 
-   public :: files_t, name_files, write_files, write_numbers
-   public :: previous_t, find_previous, check_finished, check_columns, replacement_note, remark
+   public :: files_t, name_files, claim_files, write_files, write_numbers, remark
 
    !> Length of the longest ending
    integer, parameter :: longest_ending = 24
@@ -40,23 +35,17 @@ module vcor_app_files
       character(len=longest_ending), allocatable :: endings(:)
       !> Whether each is written, in the order of `endings`
       logical, allocatable :: writes(:)
+      !> Path of the file of an unfinished sweep; empty if there is none
+      character(len=:), allocatable :: part
       !> Whether a time history is written
       logical :: history = .true.
    contains
       procedure :: name, written, directory
    end type files_t
 
-   !> Existing results
-   type :: previous_t
-      !> Whether there are any
-      logical :: exist = .false.
-      !> Whether there is an HDF5 file
-      logical :: has_hdf5 = .false.
-      !> File that was examined
-      character(len=:), allocatable :: path
-      !> Difference from the identity of the run; unallocated if they agree
-      type(error_t), allocatable :: objection
-   end type previous_t
+   !> What a run finds under the names of its files, apart from results, which it replaces: nothing,
+   !> an unfinished sweep, a file that is being written
+   integer, parameter :: state_free = 0, state_unfinished = 1, state_taken = 2
 
 contains
 
@@ -85,7 +74,7 @@ contains
    end function written
 
    !> Find which files a case writes, and where
-   subroutine name_files(request, case, grid, is_alone, files, part, error)
+   subroutine name_files(request, case, grid, is_alone, files, error)
       type(request_t), intent(in) :: request
       !> A case that was read
       type(case_t), intent(in) :: case
@@ -94,8 +83,6 @@ contains
       !> Whether it is the only case
       logical, intent(in) :: is_alone
       type(files_t), intent(out) :: files
-      !> Points to solve: all, or those of --shard
-      type(part_t), intent(out) :: part
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: directory, stem
@@ -106,7 +93,6 @@ contains
       call case%get('output', 'stem', stem)
       call check_name(case, 'directory', directory, error)
       if (.not. allocated(error)) call check_name(case, 'stem', stem, error)
-      if (.not. allocated(error)) call take_shard(request, case, grid, part, error)
       if (allocated(error)) return
       files%path = join_path(directory, stem)
       call case%get('output', 'csv', csv)
@@ -125,11 +111,10 @@ contains
       if (size(request%names) > 0 .and. .not. allocated(request%directory)) files%writes = .false.
       if (request%command == 'verify') files%writes = .false.
       files%history = files%history .and. any(files%writes)
-      ! the file that vcor merge reads
-      if (request%shards > 0) files%writes = [.false., .false., .true.]
       if (is_alone) call take_file_name(request, files)
-      if (request%shards > 0) files%path = files%path//'_shard_'//integer_text(request%shard) &
-         //'_of_'//integer_text(request%shards)
+      files%part = ''
+      if (request%command == 'run' .and. size(grid%axes) > 0 .and. any(files%writes)) &
+         files%part = files%path//'.part'
       if (request%resume .and. .not. any(files%writes)) call raise(error, error_usage, &
          '--resume: no file is written that could be resumed; --print needs --output for it')
    end subroutine name_files
@@ -150,27 +135,6 @@ contains
       if (flaw /= '') call case%refuse('output', key, 1, 'output.'//key//": the name '" &
          //printable(name)//"' "//flaw//', expected another name', error)
    end subroutine check_name
-
-   !> Determine the part of the sweep from --shard
-   subroutine take_shard(request, case, grid, part, error)
-      type(request_t), intent(in) :: request
-      type(case_t), intent(in) :: case
-      type(grid_t), intent(in) :: grid
-      type(part_t), intent(out) :: part
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      part = new_part(grid%count(), max(1, request%shard), max(1, request%shards))
-      if (request%shards == 0) return
-      if (size(grid%axes) == 0) then
-         call raise(error, error_usage, '--shard takes a part of a sweep, but ' &
-            //case%source//' has no &sweep group')
-      else if (request%shards > part%points) then
-         call raise(error, error_usage, '--shard: found '//integer_text(request%shard)//'/' &
-            //integer_text(request%shards)//', but '//case%source//' has ' &
-            //integer_text(part%points)//' points; expected no more shards than points')
-      end if
-   end subroutine take_shard
 
    !> Take the value of --output as the name of the file if a single file is written and the value
    !> has its ending
@@ -210,17 +174,69 @@ contains
       directory = self%path(:slash)
    end function directory
 
-   !> Write the files of a case: a CSV file per table, then all tables as HDF5, which comes last
-   !> because it marks complete results
-   subroutine write_files(files, tables, lines, error, data, threads)
+   !> State of the files of a case
+   function state_of(files, path) result(state)
+      type(files_t), intent(in) :: files
+      !> The file that decides; empty if they are free
+      character(len=:), allocatable, intent(out) :: path
+      !> `state_free`, `state_unfinished` or `state_taken`
+      integer :: state
+
+      integer :: i
+
+      path = files%part
+      state = state_unfinished
+      if (path /= '') then
+         if (anything_at(path)) return
+      end if
+      state = state_taken
+      do i = 1, size(files%writes)
+         if (.not. files%writes(i)) cycle
+         path = temporary_name(files%name(i))
+         if (anything_at(path)) return
+      end do
+      state = state_free
+      path = ''
+   end function state_of
+
+   !> Make sure, before the work begins, that a run may write its files: their folder exists, and
+   !> they are those of no other run, at work or killed. With --resume, what a killed one has left
+   !> of them is deleted
+   subroutine claim_files(files, resume, unfinished, error)
+      type(files_t), intent(in) :: files
+      logical, intent(in) :: resume
+      !> Whether there is an unfinished sweep to continue
+      logical, intent(out) :: unfinished
+      !> Error of code `error_file`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: path
+      integer :: i, state
+
+      unfinished = .false.
+      if (.not. any(files%writes)) return
+      state = state_of(files, path)
+      if (resume) then
+         unfinished = state == state_unfinished
+         do i = 1, size(files%writes)
+            if (files%writes(i)) call remove_file(temporary_name(files%name(i)))
+         end do
+      else if (state == state_unfinished) then
+         call raise_unfinished(path, error)
+      else if (state == state_taken) then
+         call raise_taken(path, error)
+      end if
+      if (.not. allocated(error)) call make_directory(files%directory(), error)
+   end subroutine claim_files
+
+   !> Write the files of a case: a CSV file per table, then all tables as HDF5
+   subroutine write_files(files, tables, lines, error, threads)
       type(files_t), intent(in) :: files
       !> Tables in the order of the files, shape (n)
       type(table_t), intent(in) :: tables(:)
       !> Written files, one per line of the screen
       character(len=:), allocatable, intent(out) :: lines
       type(error_t), allocatable, intent(out) :: error
-      !> Check sum of the data files of the case, for `--resume`
-      character(len=*), intent(in), optional :: data
       !> Threads that convert numbers to text; absent: 1
       integer, intent(in), optional :: threads
 
@@ -235,7 +251,7 @@ contains
       end do
       i = size(files%writes)
       if (files%writes(i) .and. .not. allocated(error)) &
-         call write_hdf5(files%name(i), tables, error, data)
+         call write_hdf5(files%name(i), tables, error)
       if (.not. allocated(error)) lines = files%written()
    end subroutine write_files
 
@@ -250,140 +266,6 @@ contains
       call write_rows(summary, [(place_in_table(summary, request%names(i)%text), &
          i=1, size(request%names))], error)
    end subroutine write_numbers
-
-   !> Find existing results
-   subroutine find_previous(files, expected, previous)
-      type(files_t), intent(in) :: files
-      !> Their expected identity
-      type(identity_t), intent(in) :: expected
-      type(previous_t), intent(out) :: previous
-
-      type(identity_t) :: identity
-      type(error_t), allocatable :: damage
-      integer :: i
-
-      ! HDF5 first; the history adds no information
-      do i = 3, 1, -2
-         previous%path = files%name(i)
-         if (files%writes(i)) previous%exist = plain_file_exists(previous%path)
-         if (previous%exist) exit
-      end do
-      if (.not. previous%exist) return
-      previous%has_hdf5 = i == 3
-      if (previous%has_hdf5) then
-         call read_identity(previous%path, identity, damage)
-      else
-         call read_csv(previous%path, identity)
-         identity%data = expected%data
-      end if
-      if (identity%version /= '') then
-         call check_same(previous%path, identity, expected, previous%objection)
-      else
-         call raise(previous%objection, error_file, quoted_path(previous%path) &
-            //' is not a file of results of vcor')
-         if (allocated(damage)) previous%objection%message = previous%objection%message//' (' &
-            //damage%message//')'
-      end if
-   end subroutine find_previous
-
-   !> With --resume, find whether the results are complete, so that nothing remains to do
-   subroutine check_finished(request, files, previous, points, is_finished, error)
-      type(request_t), intent(in) :: request
-      type(files_t), intent(in) :: files
-      type(previous_t), intent(in) :: previous
-      !> Number of points of the results
-      integer, intent(in) :: points
-      logical, intent(out) :: is_finished
-      !> With --resume, an error if the results have another identity
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: text
-
-      is_finished = .false.
-      if (.not. request%resume .or. .not. previous%exist) return
-      if (allocated(previous%objection)) then
-         error = previous%objection
-         return
-      end if
-      is_finished = is_whole(files, previous, points)
-      if (.not. is_finished) return
-      text = quoted_path(previous%path)//' is finished, there is nothing to resume'
-      if (size(request%names) > 0) then
-         call remark(text)
-      else if (.not. request%quiet) then
-         call write_stdout(text//new_line('a'), error)
-      end if
-   end subroutine check_finished
-
-   !> Whether all files exist and the CSV files have all their rows
-   function is_whole(files, previous, points)
-      type(files_t), intent(in) :: files
-      !> Existing results of this case
-      type(previous_t), intent(in) :: previous
-      !> Number of points of the results
-      integer, intent(in) :: points
-      !> Whether the results are complete
-      logical :: is_whole
-
-      type(identity_t) :: identity
-      type(reader_t) :: reader
-      type(error_t), allocatable :: error
-      integer(int64) :: ignored
-      integer :: expected, rows
-
-      is_whole = .not. files%writes(3)
-      if (previous%has_hdf5) then
-         call check_columns(previous%path, error)
-         is_whole = .not. allocated(error)
-      end if
-      if (is_whole .and. files%writes(1)) then
-         call read_csv(files%name(1), identity, rows)
-         is_whole = rows == points
-      end if
-      if (.not. (is_whole .and. files%writes(2))) return
-      call read_csv(files%name(2), identity, rows)
-      is_whole = rows > 0
-      if (.not. previous%has_hdf5) return
-      call open_hdf5(reader, previous%path, error)
-      if (.not. allocated(error)) &
-         call find_dataset(reader, 'history/time', expected, ignored, error)
-      call close_hdf5(reader)
-      is_whole = .not. allocated(error)
-      if (is_whole) is_whole = rows == expected
-   end function is_whole
-
-   !> Refuse results without the columns of this version
-   subroutine check_columns(path, error)
-      !> Path of the HDF5 file
-      character(len=*), intent(in) :: path
-      !> Error of code `error_file`, unallocated if all columns are there
-      type(error_t), allocatable, intent(out) :: error
-
-      type(reader_t) :: reader
-      integer(int64) :: ignored
-      integer :: i, rows
-
-      call open_hdf5(reader, path, error)
-      associate (list => quantities())
-         do i = 1, size(list)
-            if (.not. allocated(error)) &
-               call find_dataset(reader, 'summary/'//trim(list(i)%name), rows, ignored, error)
-         end do
-      end associate
-      call close_hdf5(reader)
-      if (allocated(error)) error%message = error%message//'; the file is damaged, or of an ' &
-         //'earlier version of vcor'
-   end subroutine check_columns
-
-   !> Note about results that are replaced
-   function replacement_note(previous) result(text)
-      type(previous_t), intent(in) :: previous
-      !> The note; empty if no other results are replaced
-      character(len=:), allocatable :: text
-
-      text = ''
-      if (allocated(previous%objection)) text = 'replaced: '//previous%objection%message
-   end function replacement_note
 
    !> Write a note to stderr
    subroutine remark(text)

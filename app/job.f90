@@ -18,21 +18,18 @@ module vcor_app_job
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable
    use vcor_words, only : contains_word, suggestion
-   use vcor_sweep_part, only : part_t
    use vcor_sweep_quantity, only : quantity_names
    use vcor_sweep_points, only : new_sweep, solve_point, sweep_t, worker_t
    implicit none
    private
 
-   public :: job_t, window_t, prepare, find_window, file_read, shard_text
+   public :: job_t, window_t, prepare, find_window, file_read
 
    !> A case of a command, ready to run
    type :: job_t
       type(case_t) :: case
       !> Its impacts
       type(sweep_t) :: sweep
-      !> The points to solve
-      type(part_t) :: part
       character(len=:), allocatable :: method
       !> Its files
       type(files_t) :: files
@@ -83,7 +80,7 @@ contains
             if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
             job%method = method_of(job%case)
             if (.not. allocated(error)) call name_files(request, job%case, job%sweep%grid, &
-               size(jobs) == 1, job%files, job%part, error)
+               size(jobs) == 1, job%files, error)
          end associate
          do j = 1, i
             if (.not. allocated(error)) call refuse_clash(jobs(i), jobs(j), i == j, error)
@@ -125,17 +122,6 @@ contains
          end if
       end do
    end subroutine read_cases
-
-   !> Name of the shard, for messages
-   function shard_text(part) result(text)
-      type(part_t), intent(in) :: part
-      !> In words; empty without --shard
-      character(len=:), allocatable :: text
-
-      text = ''
-      if (part%parts > 1) text = ' of shard '//integer_text(part%number)//' of ' &
-         //integer_text(part%parts)
-   end function shard_text
 
    !> Check that names of --print with a dot are swept parameters
    subroutine check_names(request, grid, error)
@@ -196,9 +182,11 @@ contains
 
          character(len=:), allocatable :: path, kind
 
-         do i = 1, size(writer%files%writes)
-            if (.not. writer%files%writes(i)) cycle
-            path = file_read(reader%case, writer%files%name(i))
+         do i = 0, size(writer%files%writes)
+            path = writer%files%part
+            if (i > 0) path = writer%files%name(i)
+            if (path == '') cycle
+            path = file_read(reader%case, path)
             kind = trim(merge('case', 'data', path == reader%case%source))
             if (path /= '') call raise(error, error_input, writer%case%source//': its results ' &
                //'would replace the '//kind//' file '//path//': give it another output.stem')

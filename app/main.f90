@@ -2,17 +2,15 @@
 !>
 !> Each command has a page in `vcor_app_commands` and a call here.
 program vcor_main
-   use, intrinsic :: iso_c_binding, only : c_int
+   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
    use vcor_app_external, only : run_external
    use vcor_app_help, only : help_json, help_text
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
-   use vcor_app_merge, only : merge_shards
    use vcor_app_run, only : run_impact
    use vcor_app_screen, only : short
-   use vcor_app_signals, only : prepare_signals
    use vcor_app_sweep, only : run_sweep
    use vcor_app_validity, only : warn_of_implausible
    use vcor_app_verify, only : verify_case, verify_program
@@ -32,16 +30,30 @@ program vcor_main
          import :: c_int
          integer(c_int), intent(in), value :: code
       end subroutine c_exit
+
+      !> Set the handler of a signal
+      function c_signal(number, handler) result(before) bind(c, name='signal')
+         import :: c_int, c_intptr_t
+         integer(c_int), intent(in), value :: number
+         !> The handler and the one before it; 1: ignore the signal
+         integer(c_intptr_t), intent(in), value :: handler
+         integer(c_intptr_t) :: before
+      end function c_signal
    end interface
+
+   !> Signal that a file exceeds the limit of the user (SIGXFSZ)
+   integer(c_int), parameter :: file_too_large = 25
 
    type(argument_t), allocatable :: words(:)
    type(request_t) :: request
    type(error_t), allocatable :: error
+   integer(c_intptr_t) :: ignored
 
    call get_arguments(words)
    call run_external(words)
    call join_ranks()
-   call prepare_signals()
+   ! writing fails then, as on a full disk
+   ignored = c_signal(file_too_large, 1_c_intptr_t)
    call parse(words, request, error)
    call share_error(error)
    if (.not. allocated(error)) then
@@ -89,8 +101,6 @@ contains
             call help_text(topic, text, error)
          end if
          if (.not. allocated(error)) call write_stdout(text, error)
-      case ('merge')
-         call merge_shards(request, error)
       case default
          if (size(request%files) == 0) then
             call verify_program(request%quiet, error)

@@ -1,24 +1,23 @@
 !> The command run for a single impact; sweeps are in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
-      replacement_note, write_files, write_numbers
+   use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : report, short
    use vcor_app_validity, only : about_numbers, beyond_data, joined, measures_remark, &
       measures_report, mechanics_of, solve_exact, warn_of_bands
+   use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
    use vcor_io_file, only : write_stdout
-   use vcor_io_identity, only : identity_of, identity_t
    use vcor_text, only : integer_text
    use vcor_io_results, only : history_table, summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_solver_type, only : light_plate
-   use vcor_sweep_quantity, only : new_summary, summary_t, values_of
+   use vcor_sweep_quantity, only : new_summary, row_of, summary_t
    use vcor_sweep_points, only : solve_point, worker_t
    use vcor_verify_models, only : model_t
    implicit none
@@ -36,30 +35,26 @@ contains
       !> failures; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(previous_t) :: previous
-      type(identity_t) :: identity
       type(summary_t) :: summary
       type(table_t), allocatable :: tables(:)
       type(worker_t) :: worker
       type(outcome_t) :: outcome
       type(error_t), allocatable :: trouble
-      character(len=:), allocatable :: files
-      logical :: is_finished
+      character(len=:), allocatable :: completed, files, title
+      logical :: ignored
 
-      identity = identity_of(job%case, job%part)
-      call find_previous(job%files, identity, previous)
-      call check_finished(request, job%files, previous, job%part%count(), &
-         is_finished, error)
-      if (allocated(error) .or. is_finished) return
-
+      call claim_files(job%files, request%resume, ignored, error)
+      if (allocated(error)) return
+      call job%case%get('case', 'title', title)
+      completed = case_text(job%case, complete=.true.)
       call new_summary(summary, 1, error)
       if (allocated(error)) return
       call solve_point(job%sweep, 1, worker, outcome, error)
-      call summary%put(1, values_of(outcome))
+      call summary%put(1, row_of(outcome))
       if (.not. allocated(error)) call warn_of_bands(job%case, job%sweep%grid, &
          summary)
       allocate (tables(merge(2, 1, job%files%history)))
-      call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
+      call summary_table(tables(1), title, completed, job%sweep%grid, summary)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
          ! without a trajectory, only numbers can be written
@@ -69,9 +64,8 @@ contains
          return
       end if
       call end_of(job, outcome, worker%trajectory, error)
-      if (job%files%history) call history_table(tables(2), identity%title, identity%case_text, &
-         worker%trajectory)
-      call write_files(job%files, tables, files, trouble, identity%data)
+      if (job%files%history) call history_table(tables(2), title, completed, worker%trajectory)
+      call write_files(job%files, tables, files, trouble)
       if (allocated(trouble)) then
          continue
       else if (size(request%names) > 0) then
@@ -82,11 +76,7 @@ contains
       else if (.not. request%quiet) then
          call write_screen()
       end if
-      if (allocated(trouble)) then
-         call move_alloc(trouble, error)
-      else if (request%quiet .or. size(request%names) > 0) then
-         call remark(replacement_note(previous))
-      end if
+      if (allocated(trouble)) call move_alloc(trouble, error)
 
    contains
 
@@ -115,9 +105,9 @@ contains
             method = job%method
             ! `auto` uses direct if ive fails
             if (method == 'ive' .and. course%stages == 0) method = 'direct'
-            call write_stdout(report(job%case%source, identity%title, method, outcome, &
+            call write_stdout(report(job%case%source, title, method, outcome, &
                exact%outcome, course%state(1, course%last), lines &
-               //remarks_on(job, outcome)//files//as_line(replacement_note(previous))), trouble)
+               //remarks_on(job, outcome)//files), trouble)
          end associate
       end subroutine write_screen
    end subroutine run_impact

@@ -4,56 +4,49 @@
 module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : check_columns, check_finished, find_previous, previous_t, remark, &
-      replacement_note, write_files, write_numbers
-   use vcor_app_job, only : job_t, shard_text
+   use vcor_app_files, only : claim_files, remark, write_files, write_numbers
+   use vcor_app_job, only : job_t
    use vcor_app_screen, only : coordinates, heading, padded, right, shown, significant
-   use vcor_app_signals, only : catch_signals, caught_signal, release_signals, &
-      signal_name
    use vcor_app_validity, only : about_numbers, joined, points_remark, points_report, &
       warn_of_bands
-   use vcor_case_grid, only : grid_t
+   use vcor_case_printed, only : case_text
    use vcor_error, only : error_input, error_numerical, error_t, raise
-   use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points
-   use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout, write_terminal
-   use vcor_io_identity, only : identity_of, identity_t, number_of
+   use vcor_io_file, only : stderr_is_terminal, write_stdout, write_terminal
+   use vcor_io_restart, only : create_restart, hash_of, open_restart, restart_t
    use vcor_text, only : integer_text
-   use vcor_io_path, only : anything_at, make_directory, quoted_path
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
    use vcor_sweep_mpi, only : differs, largest_of_ranks, share_error, this_rank
    use vcor_sweep_points, only : clock, default_threads, failures_t, monitor_t, solve_points
-   use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
-      quantities, quantity_place, quantity_t, summary_t
+   use vcor_sweep_quantity, only : new_summary, point_pending, quantities, quantity_place, &
+      quantity_t, status_name, summary_t
    implicit none
    private
 
    public :: run_sweep
 
-   !> Exit code of a run ended by a signal minus the number of the signal, as in shells
-   integer, parameter :: signal_base = 128
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
 
-   !> Time after which a sweep gets a file [s]; a shorter one is quickly repeated
-   real(wp), parameter :: time_without_file = 0.25_wp
+   !> Time after which a sweep gets a file of finished points [s]; a shorter one is quickly repeated
+   real(wp), parameter :: time_without_file = 1.0_wp
    !> Minimum time between two progress lines [s]
    real(wp), parameter :: time_between_lines = 0.2_wp
    !> Length of the progress line
    integer, parameter :: width = 72
 
-   !> Observer of a sweep that writes its file and shows its progress
+   !> Observer of a sweep that keeps finished points in a file and shows its progress
    type, extends(monitor_t) :: watch_t
-      !> Whether to store finished points in a file
-      logical :: keeps = .false.
+      !> Path of the file; empty if there is none
+      character(len=:), allocatable :: path
+      !> Check sum of the case
+      integer :: hash = 0
+      type(restart_t) :: file
       !> Whether to show progress on the terminal
       logical :: shows = .false.
-      character(len=:), allocatable :: path
-      type(identity_t) :: identity
-      !> Grid of the sweep
-      type(grid_t) :: grid
-      type(checkpoint_t) :: file
+      !> Points of the sweep
+      integer :: points = 0
       !> Points done
       integer :: done = 0
       !> Points done at the start
@@ -64,7 +57,6 @@ module vcor_app_sweep
       real(wp), private :: shown = 0.0_wp
    contains
       procedure :: finished, clear
-      procedure, nopass :: stop_code => caught_signal
    end type watch_t
 
 contains
@@ -77,205 +69,92 @@ contains
       !> failures; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(previous_t) :: previous
       type(summary_t) :: summary
       type(failures_t) :: failures
       type(watch_t) :: watch
-      integer :: stopped
-      logical :: is_finished
 
-      watch%identity = identity_of(job%case, job%part)
-      watch%path = job%files%path//'.part.h5'
-      watch%keeps = any(job%files%writes) .and. this_rank() == 0
-      is_finished = .false.
-      if (this_rank() == 0) call begin(request, job, watch, previous, summary, is_finished, error)
-      call share_error(error)
-      is_finished = any(largest_of_ranks([merge(1, 0, is_finished)]) == 1)
-      if (is_finished .or. allocated(error)) return
-      if (differs(number_of(watch%identity))) then
+      watch%hash = hash_of(job%case)
+      if (differs(watch%hash)) then
          call raise(error, error_input, job%case%source//': not all ranks read the same case, or ' &
             //'have the same version of vcor')
          return
       end if
-
-      call catch_signals()
-      call solve_points(job%sweep, job%part, threads_of(request), summary, failures, error, watch, &
-         stopped)
+      if (this_rank() == 0) call begin(request, job, watch, summary, error)
+      call share_error(error)
+      if (allocated(error)) return
+      call solve_points(job%sweep, threads_of(request), summary, failures, error, watch)
       if (this_rank() == 0) then
          call watch%clear()
-         if (.not. allocated(error)) call finish(request, job, watch, previous, summary, failures, &
-            stopped, error)
+         if (.not. allocated(error)) call finish(request, job, watch, summary, failures, error)
          call watch%file%close()
       end if
       call share_error(error)
-      call release_signals()
    end subroutine run_sweep
 
-   !> Find existing results, and the points that remain
-   subroutine begin(request, job, watch, previous, summary, is_finished, error)
+   !> Find the points that remain
+   subroutine begin(request, job, watch, summary, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
       type(watch_t), intent(inout) :: watch
-      !> Existing results
-      type(previous_t), intent(out) :: previous
-      !> Existing outcomes; the others are pending
+      !> Outcomes of an interrupted run; the others are pending
       type(summary_t), intent(out) :: summary
-      logical, intent(out) :: is_finished
       type(error_t), allocatable, intent(out) :: error
 
-      logical :: is_unfinished
+      logical :: unfinished
 
-      is_finished = .false.
-      is_unfinished = .false.
-      if (watch%keeps) is_unfinished = anything_at(watch%path)
-      call find_previous(job%files, watch%identity, previous)
-      call new_summary(summary, job%part%count(), error, threads_of(request))
+      watch%path = job%files%part
+      watch%points = job%sweep%grid%count()
+      call new_summary(summary, watch%points, error, threads_of(request))
       if (allocated(error)) error%message = job%case%source//': '//error%message
-      if (.not. (allocated(error) .or. is_unfinished)) then
-         if (request%resume .and. request%shards > 0) &
-            call look_into_shard(previous, watch, summary, is_unfinished, error)
-         if (.not. (is_unfinished .or. allocated(error))) &
-            call check_finished(request, job%files, previous, job%part%count(), &
-         is_finished, error)
-      end if
-      if (allocated(error) .or. is_finished) return
-      if (is_unfinished) then
-         call open_checkpoint(watch%file, watch%path, watch%identity, summary, error, &
-            anew=.not. request%resume)
-      else if (request%resume .and. previous%has_hdf5) then
-         call check_columns(previous%path, error)
-      else if (watch%keeps) then
-         ! detect a wrong path now, not after hours
-         call make_directory(job%files%directory(), error)
-      end if
+      if (.not. allocated(error)) call claim_files(job%files, request%resume, unfinished, error)
       if (allocated(error)) return
-      if (is_unfinished .and. .not. request%resume) call remark(quoted_path(watch%path) &
-         //' is given up, the sweep begins anew (--resume would go on with it)')
-      ! files do not contain why a point has no result: it is solved again, to the same bits
-      where (summary%status == point_invalid .or. summary%status == point_failed) &
-         summary%status = point_pending
+      if (unfinished) call open_restart(watch%file, watch%path, watch%hash, summary, error)
       watch%done = count(summary%status /= point_pending)
       watch%done_before = watch%done
-      watch%grid = job%sweep%grid
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
 
-   !> Read an existing shard; damaged points of a finished one are solved again
-   subroutine look_into_shard(previous, watch, summary, is_unfinished, error)
-      !> The existing shard, if any
-      type(previous_t), intent(in) :: previous
-      type(watch_t), intent(in) :: watch
-      !> Its outcomes, allocated
-      type(summary_t), intent(inout) :: summary
-      !> Whether points remain to be solved; its file is then renamed to that of an unfinished one
-      logical, intent(out) :: is_unfinished
-      type(error_t), allocatable, intent(out) :: error
-
-      is_unfinished = .false.
-      if (.not. previous%exist .or. allocated(previous%objection)) return
-      call read_points(previous%path, watch%identity, summary, error)
-      if (allocated(error)) return
-      is_unfinished = any(summary%status == point_pending)
-      if (is_unfinished) call move_file(previous%path, watch%path, error)
-   end subroutine look_into_shard
-
-   !> Finish a sweep: write the results, or report what stopped it
-   subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
+   !> Write the results of a sweep
+   subroutine finish(request, job, watch, summary, failures, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
       type(watch_t), intent(inout) :: watch
-      !> Results that existed before
-      type(previous_t), intent(in) :: previous
       type(summary_t), intent(inout) :: summary
       type(failures_t), intent(in) :: failures
-      !> Signal that ended the sweep; 0: none
-      integer, intent(in) :: stopped
       type(error_t), allocatable, intent(out) :: error
 
       type(error_t), allocatable :: trouble
-      logical :: is_shard
-
-      is_shard = request%shards > 0
-      if (watch%keeps .and. .not. watch%file%is_open() .and. (is_shard .or. stopped /= 0)) then
-         call create_checkpoint(watch%file, watch%path, watch%identity, watch%grid, summary, &
-            error)
-         if (allocated(error)) return
-      end if
-      if (stopped /= 0) then
-         call raise(error, signal_base + stopped, job%case%source//': stopped by ' &
-            //signal_name(stopped)//' after '//integer_text(watch%done)//' of ' &
-            //integer_text(job%part%count())//' points')
-         if (watch%keeps) error%message = error%message//', which are in ' &
-            //quoted_path(watch%path)//'; the same command with --resume goes on'
-         return
-      end if
-      call end_of_sweep(job, failures, error)
-      if (is_shard) then
-         call finish_shard(request, job, watch, failures, trouble)
-      else
-         call finish_whole(request, job, watch, summary, failures, trouble)
-      end if
-      if (allocated(trouble)) then
-         call move_alloc(trouble, error)
-      else
-         call remark(replacement_note(previous))
-      end if
-   end subroutine finish
-
-   !> Write the results of a whole sweep
-   subroutine finish_whole(request, job, watch, summary, failures, error)
-      type(request_t), intent(in) :: request
-      type(job_t), intent(in) :: job
-      type(watch_t), intent(inout) :: watch
-      type(summary_t), intent(inout) :: summary
-      type(failures_t), intent(in) :: failures
-      type(error_t), allocatable, intent(out) :: error
-
       type(table_t) :: tables(1)
-      character(len=:), allocatable :: files, validity, less
+      character(len=:), allocatable :: files, less, title, validity
 
+      call end_of_sweep(job, failures, error)
       call warn_of_bands(job%case, job%sweep%grid, summary)
       if (size(request%names) > 0) then
          validity = points_remark(job%sweep%grid, summary)
       else
          validity = points_report(job%sweep%grid, summary)
       end if
-      associate (identity => watch%identity)
-         call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(job%files, tables, files, error, identity%data, threads_of(request))
-         if (allocated(error)) return
-         ! results are complete under their final names
+      call job%case%get('case', 'title', title)
+      call summary_table(tables(1), title, case_text(job%case, complete=.true.), job%sweep%grid, &
+         summary)
+      call write_files(job%files, tables, files, trouble, threads_of(request))
+      if (allocated(trouble)) then
+         continue
+      else if (size(request%names) > 0) then
+         ! results stand under their names
          call watch%file%remove()
-         if (size(request%names) > 0) then
-            call write_numbers(request, tables(1), error)
-            if (request%quiet) return
-            less = ''
-            if (failures%inexact%count > 0) less = inexact(job, failures)
-            call remark(about_numbers(job%case, joined(less, validity)))
-         else if (.not. request%quiet) then
-            call write_stdout(report(job, identity%title, failures, files, &
-               tables(1), validity), error)
-         end if
-      end associate
-   end subroutine finish_whole
-
-   !> Rename the file of a finished shard
-   subroutine finish_shard(request, job, watch, failures, error)
-      type(request_t), intent(in) :: request
-      type(job_t), intent(in) :: job
-      type(watch_t), intent(inout) :: watch
-      type(failures_t), intent(in) :: failures
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: path
-
-      path = job%files%path//trim(job%files%endings(3))
-      call watch%file%close_as(path, error)
-      if (.not. allocated(error) .and. .not. request%quiet) &
-         call write_stdout(report(job, watch%identity%title, failures, &
-            '  written '//path//nl), error)
-   end subroutine finish_shard
+         call write_numbers(request, tables(1), trouble)
+         less = ''
+         if (failures%inexact%count > 0) less = inexact(job, failures)
+         if (.not. request%quiet) call remark(about_numbers(job%case, joined(less, validity)))
+      else
+         call watch%file%remove()
+         if (.not. request%quiet) call write_stdout(report(job, title, failures, files, tables(1), &
+            validity), trouble)
+      end if
+      if (allocated(trouble)) call move_alloc(trouble, error)
+   end subroutine finish
 
    !> Raise an error if points have no result, after all points are done
    subroutine end_of_sweep(job, failures, error)
@@ -286,24 +165,21 @@ contains
 
       if (failures%count == 0) return
       call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
-         //' of '//integer_text(job%part%count())//' points'//shard_text(job%part) &
-         //' without result, the first at ' &
-         //coordinates(job%sweep%grid, failures%reason(1)%first)//': ' &
-         //trim(failures%reason(1)%message))
+         //' of '//integer_text(job%sweep%grid%count())//' points without result, the first at ' &
+         //coordinates(job%sweep%grid, failures%kind(1)%first)//': '//failures%kind(1)%message)
    end subroutine end_of_sweep
 
-   !> Report of a sweep or a shard: swept parameters, ranges of the outcomes, points without a
-   !> result and the reasons
+   !> Report of a sweep: swept parameters, ranges of the outcomes, and points without a result
    function report(job, title, failures, files, summary, validity) result(text)
       type(job_t), intent(in) :: job
       character(len=*), intent(in) :: title
       type(failures_t), intent(in) :: failures
       !> Written files, one per line
       character(len=*), intent(in) :: files
-      !> Outcomes of a whole sweep
-      type(table_t), intent(in), optional :: summary
+      !> Outcomes
+      type(table_t), intent(in) :: summary
       !> Report of their validity, one item per line
-      character(len=*), intent(in), optional :: validity
+      character(len=*), intent(in) :: validity
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: method
@@ -318,20 +194,16 @@ contains
                //merge(' value ', ' values', n == 1))//nl
          end associate
       end do
-      text = text//nl//'  '//integer_text(job%part%count())
-      if (job%part%parts > 1) text = text//' of '//integer_text(job%part%points)
       ! with `auto` the method may differ between points
       call job%case%get('solver', 'method', method)
       if (method /= 'auto' .or. job%method /= 'ive') method = job%method
-      text = text//' impacts'//shard_text(job%part)//', '//method//nl
-      if (present(summary)) text = text//nl//ranges(summary)
-      if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (present(validity)) then
-         if (len(validity) > 0) text = text//nl//validity
-      end if
+      text = text//nl//'  '//integer_text(job%sweep%grid%count())//' impacts, '//method//nl
+      text = text//nl//ranges(summary)
+      if (failures%count > 0) text = text//nl//failed_points(job, failures)
+      if (len(validity) > 0) text = text//nl//validity
       if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       call job%case%get('output', 'history', history)
-      if (history .and. any(job%files%writes) .and. job%part%parts == 1) text = text//nl &
+      if (history .and. any(job%files%writes)) text = text//nl &
          //'  note: time histories are written of single impacts only'//nl
       if (len(files) > 0) text = text//nl//files
       text = text//nl
@@ -374,62 +246,56 @@ contains
       end do
    end function ranges
 
-   !> Points without a result, and the reasons
-   function reasons(job, failures) result(text)
+   !> Points without a result, by their status
+   function failed_points(job, failures) result(text)
       type(job_t), intent(in) :: job
       type(failures_t), intent(in) :: failures
       character(len=:), allocatable :: text
 
       integer :: i
 
-      text = '  '//integer_text(failures%count)//' of '//integer_text(job%part%count()) &
-         //' points'//shard_text(job%part)//' without result:'//nl
-      do i = 1, failures%reasons
-         associate (reason => failures%reason(i))
-            text = text//'  '//right(integer_text(reason%count), 8)//'  ' &
-               //trim(reason%message)//nl &
-               //'            first at point '//integer_text(reason%first)//': ' &
-               //coordinates(job%sweep%grid, reason%first)//nl
+      text = '  '//integer_text(failures%count)//' of '//integer_text(job%sweep%grid%count()) &
+         //' points without result:'//nl
+      do i = 1, failures%kinds
+         associate (kind => failures%kind(i))
+            text = text//'  '//right(integer_text(kind%count), 8)//'  '//status_name(kind%status) &
+               //', first at point '//integer_text(kind%first)//', ' &
+               //coordinates(job%sweep%grid, kind%first)//':'//nl &
+               //'            '//kind%message//nl
          end associate
       end do
-   end function reasons
+   end function failed_points
 
    !> Number of points that are less accurate than requested
    function inexact(job, failures) result(text)
       type(job_t), intent(in) :: job
-      !> Reasons, with the count of inexact points
       type(failures_t), intent(in) :: failures
       !> One line
       character(len=:), allocatable :: text
 
-      text = integer_text(failures%inexact%count)//' of '//integer_text(job%part%count()) &
-         //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
-         //'asked for, the first one is point '//integer_text(failures%inexact%first)//': ' &
+      text = integer_text(failures%inexact%count)//' of '//integer_text(job%sweep%grid%count()) &
+         //' points have an estimated error above the accuracy asked for, the first one is point ' &
+         //integer_text(failures%inexact%first)//': ' &
          //coordinates(job%sweep%grid, failures%inexact%first)
    end function inexact
 
-   !> Store finished points and show progress; the monitor's `finished`
-   subroutine finished(self, first, last, count, summary, error)
+   !> Keep finished points and show progress; the monitor's `finished`
+   subroutine finished(self, places, summary, error)
       class(watch_t), intent(inout) :: self
-      !> First place that may have changed
-      integer, intent(in) :: first
-      !> Last place that may have changed
-      integer, intent(in) :: last
-      !> Number of newly finished points between these places
-      integer, intent(in) :: count
-      type(summary_t), intent(inout) :: summary
-      !> Set if they cannot be stored; unallocated on success
+      !> The points
+      integer, intent(in) :: places(:)
+      type(summary_t), intent(in) :: summary
+      !> Set if they cannot be kept; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: now
 
       now = clock()
-      self%done = self%done + count
+      self%done = self%done + size(places)
       if (self%file%is_open()) then
-         call self%file%put(first, last, summary, error)
-      else if (self%keeps .and. now - self%start > time_without_file) then
-         call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, &
-            error)
+         call self%file%put(places, summary, error)
+      else if (self%path /= '' .and. now - self%start > time_without_file) then
+         call create_restart(self%file, self%path, self%hash, summary, error)
       end if
       if (allocated(error)) return
       if (self%shows .and. now - self%shown > time_between_lines) then
@@ -446,13 +312,10 @@ contains
 
       character(len=:), allocatable :: line
       real(wp) :: rate
-      integer :: points
-
-      points = self%identity%part%count()
       rate = real(self%done - self%done_before, wp)/max(time, epsilon(time))
-      line = '  '//integer_text(self%done)//' of '//integer_text(points)//' points, ' &
-         //integer_text(int(100.0_wp*real(self%done, wp)/real(points, wp)))//' %, ' &
-         //rate_text(rate)//', '//time_text(real(points - self%done, wp)/rate)//' left'
+      line = '  '//integer_text(self%done)//' of '//integer_text(self%points)//' points, ' &
+         //integer_text(int(100.0_wp*real(self%done, wp)/real(self%points, wp)))//' %, ' &
+         //rate_text(rate)//', '//time_text(real(self%points - self%done, wp)/rate)//' left'
       call write_terminal(achar(13)//line//repeat(' ', max(0, width - len(line))))
    end subroutine show
 

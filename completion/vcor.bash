@@ -2,7 +2,7 @@
 declare -A _vcor_options=()
 
 _vcor() {
-   local commands='run merge check material verify help'
+   local commands='run check material verify help'
    local line=${COMP_LINE:0:COMP_POINT} command=${COMP_WORDS[1]} word option options= kept= words=
    # the whole word before the cursor, which readline takes apart at = and :
    word=${line##*[[:space:]]}
@@ -19,8 +19,7 @@ _vcor() {
       word=${word#*=}
    fi
    case $command in
-      run) options='--set --output --print --threads --resume --shard --quiet --help' ;;
-      merge) options='--output --quiet --help' ;;
+      run) options='--set --output --print --threads --resume --quiet --help' ;;
       check) options='--set --help' ;;
       material) options='--set --output --from --to --points --quiet --help' ;;
       verify) options='--set --quiet --help' ;;
@@ -35,7 +34,7 @@ _vcor() {
       --print | --quantity)
          words='cor cor_sphere contact_time max_indentation max_force residual_indentation residual_ratio hysteresis_energy wave_energy energy_loss initial_energy energy_imbalance min_frequency inelasticity loss_tangent cor_error cor_sphere_error contact_time_error max_force_error resilience rebound_height contact_radius contact_ratio thickness_ratio layer_ratio layer_stiffening plate_wave_number needed_extent deflection_ratio weight_ratio mean_pressure half_space_loss bending_loss peak_loss_tangent validity validity_cause steps status'
          kept=${word%"${word##*,}"} ;;
-      help) words='accuracy activation_energy alpha base bending_loss beta case check coefficient contact contact_radius contact_ratio contact_time contact_time_error continue_after_separation cor cor_error cor_sphere cor_sphere_error count csv deflection_ratio density directory drop_height end_time energy_imbalance energy_loss equilibrium_modulus exponent extent file form glassy_modulus gravity half_angle half_space_loss half_thickness hdf5 help history hysteresis_energy impact inelasticity initial_energy input law layer_ratio layer_stiffening loss_tangent mass material max_force max_force_error max_indentation mean_pressure mechanics merge method min_frequency model moduli modulus modulus_kind modulus_unit name needed_extent output pair parameter peak_loss_tangent plate plate_wave_number poisson_ratio profile_coefficient profile_power punch_radius quadrature radius rates rebound_height reference_temperature relaxing_modulus residual_indentation residual_ratio resilience run scheme shape shift shift_file solver spacing sphere start status stem steps stop surface_radius sweep temperature thickness thickness_ratio time time_step time_unit times title valid_from valid_temperature_from valid_temperature_to valid_to validity validity_cause values velocity verify vertical_shift viscosity volterra_coefficient volterra_order wave_energy waves weight_ratio wlf_c1 wlf_c2 yield_strength' ;;
+      help) words='accuracy activation_energy alpha base bending_loss beta case check coefficient contact contact_radius contact_ratio contact_time contact_time_error continue_after_separation cor cor_error cor_sphere cor_sphere_error count csv deflection_ratio density directory drop_height end_time energy_imbalance energy_loss equilibrium_modulus exponent extent file form glassy_modulus gravity half_angle half_space_loss half_thickness hdf5 help history hysteresis_energy impact inelasticity initial_energy input law layer_ratio layer_stiffening loss_tangent mass material max_force max_force_error max_indentation mean_pressure mechanics method min_frequency model moduli modulus modulus_kind modulus_unit name needed_extent output pair parameter peak_loss_tangent plate plate_wave_number poisson_ratio profile_coefficient profile_power punch_radius quadrature radius rates rebound_height reference_temperature relaxing_modulus residual_indentation residual_ratio resilience run scheme shape shift shift_file solver spacing sphere start status stem steps stop surface_radius sweep temperature thickness thickness_ratio time time_step time_unit times title valid_from valid_temperature_from valid_temperature_to valid_to validity validity_cause values velocity verify vertical_shift viscosity volterra_coefficient volterra_order wave_energy waves weight_ratio wlf_c1 wlf_c2 yield_strength' ;;
       *) [[ $word != -* ]] || words=$options ;;
    esac
    # no word is left: names of files

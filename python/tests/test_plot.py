@@ -364,14 +364,12 @@ def test_texts_stand_for_themselves(results, tmp_path):
     save(made, tmp_path / "b.svg")
 
 
-def test_damage_in_what_others_wrote(results, tmp_path):
-    """HDF5 takes the seal off a file that it changes: it is drawn as before."""
+def test_file_that_others_changed(results, tmp_path):
+    """It is drawn as before."""
     path = tmp_path / "a.h5"
     shutil.copy(results / "sls_ghost.h5", path)
-    assert path.read_bytes().endswith(b"vcorseal")
     with h5py.File(path, "r+") as file:
         file.attrs["remark"] = "looks good"
-    assert b"vcorseal" not in path.read_bytes()
     figure([path])
 
 
@@ -484,7 +482,9 @@ def bad(results):
     (results / "nothing.h5").write_bytes(b"")
     whole = (results / "sweep.h5").read_bytes()
     (results / "cut.h5").write_bytes(whole[:3000])
-    (results / "bit.h5").write_bytes(whole[:3000] + bytes([whole[3000] ^ 1]) + whole[3001:])
+    with h5py.File(results / "sweep.h5") as file:
+        place = file["summary/cor"].id.get_chunk_info(0).byte_offset
+    (results / "bit.h5").write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
     (results / "folder.h5").mkdir()
     (results / "link.svg").symlink_to("/dev/null")
     for name, values in (("still", [0.0, 0.0, 0.0]), ("part", None)):
@@ -515,7 +515,7 @@ def bad(results):
         (["text.h5"], 3, "this is no HDF5 file"),
         (["nothing.h5"], 3, "this is no HDF5 file"),
         (["cut.h5"], 4, "cannot be read"),
-        (["bit.h5"], 4, "damaged"),
+        (["bit.h5"], 4, "cannot be read"),
         (["folder.h5"], 4, "found a folder"),
         (["empty.h5"], 3, "no group 'summary'"),
         (["still.h5"], 3, "not that of an impact"),
@@ -576,18 +576,25 @@ def test_errors(bad, monkeypatch, capsys, words, code, line):
     assert sorted(bad.iterdir()) == before
 
 
-def test_no_damage_is_missed(results, tmp_path):
-    """Nothing of a damaged file comes to HDF5, which may crash."""
+def test_no_damage_of_numbers_is_missed(results, tmp_path):
+    """They have the check sums of HDF5."""
     whole = (results / "sls_ghost.h5").read_bytes()
+    chunks = []
+    with h5py.File(results / "sls_ghost.h5") as file:
+        for group in file.values():
+            for one in group.values():
+                if one.dtype.kind in "fi":
+                    assert one.fletcher32
+                    chunks.append(one.id.get_chunk_info(0))
     lot = random.Random(1)
     for _ in range(100):
         data = bytearray(whole)
-        place, length = lot.randrange(8, len(data) - 40), lot.randrange(1, 30)
-        data[place : place + length] = lot.randbytes(length)
+        chunk = lot.choice(chunks)
+        data[chunk.byte_offset + lot.randrange(chunk.size)] ^= 1 << lot.randrange(8)
         (tmp_path / "a.h5").write_bytes(data)
-        if data != whole:
-            with pytest.raises(vcor.FileError, match="damaged"):
-                vcor.open(tmp_path / "a.h5")
+        with pytest.raises(vcor.FileError, match="cannot be read"):
+            for group in ("summary", "history"):
+                vcor.open(tmp_path / "a.h5", group)
     os.mkfifo(tmp_path / "pipe.h5")
     with pytest.raises(vcor.FileError, match="expected a file of results"):
         vcor.open(tmp_path / "pipe.h5")

@@ -26,9 +26,8 @@ module vcor_c_api
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_sweep_part, only : most_threads, new_part
-   use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, &
-      solve_points, sweep_t, worker_t
+   use vcor_sweep_points, only : default_threads, failures_t, most_threads, new_sweep, &
+      solve_point, solve_points, sweep_t, worker_t
    use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
       quantity_names, quantity_place, quantity_t, summary_t
    use vcor_number, only : real_text
@@ -429,7 +428,7 @@ contains
       if (process == 0 .and. team > 1 .and. n > 1) process = current
 !$omp end critical (vcor_c_api)
       if (allocated(error) .or. n == 0) return
-      call solve_points(sweep, new_part(n, 1, 1), team, summary, failures, error)
+      call solve_points(sweep, team, summary, failures, error)
       do i = 1, size(columns)
          if (places(i) > size(summary%values)) then
             results(i, :) = real(summary%status, wp)
@@ -443,11 +442,11 @@ contains
 !$omp critical (vcor_c_api)
       if (size(addresses) == 0) then
          call raise(error, merge(error_input, error_numerical, summary%status(1) == point_invalid), &
-            handle%case%source//': '//trim(failures%reason(1)%message))
+            handle%case%source//': '//failures%kind(1)%message)
       else
          remark = integer_text(failures%count)//' of '//integer_text(n) &
             //' points have no result, the first is point ' &
-            //integer_text(failures%reason(1)%first)//': '//trim(failures%reason(1)%message)
+            //integer_text(failures%kind(1)%first)//': '//failures%kind(1)%message
       end if
 !$omp end critical (vcor_c_api)
    end subroutine solve_table

@@ -29,7 +29,7 @@ print -r -- $shown
 LINES = [
     ("vcor ver", {"verify"}, {"run", "hello", "locked"}),
     ("vcor h", {"help", "hello"}, {"run"}),
-    ("vcor run --s", {"--set", "--shard"}, {"--quiet"}),
+    ("vcor run --re", {"--resume"}, {"--quiet"}),
     ("vcor run --print cor,contact_", {"cor,contact_time", "cor,contact_ratio"}, {"cor,cor"}),
     ("vcor check --set solver.me", {"solver.method=ive"}, {"solver.form=a"}),
     ("vcor help contact_t", {"contact_time"}, {"contact_ratio"}),

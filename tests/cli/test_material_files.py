@@ -155,30 +155,3 @@ def test_butyl_is_that_of_the_paper(vcor):
     vcor.write(paper.read_text(encoding="utf-8"), "b.nml")
     words = ["--set", "impact.velocity=5", "--print", "cor", "--quiet"]
     assert float(found) == pytest.approx(float(vcor.succeeds("run", "b.nml", *words)), rel=1e-12)
-
-
-SWEEP = BODIES + "&sweep parameter = 'impact.velocity', start = 1, stop = 5, count = 9 /\n"
-
-
-def test_resume(vcor):
-    vcor.write(SWEEP, "a.nml")
-    vcor.write(STEEL + RUBBER, "m.nml")
-    vcor.succeeds("run", "a.nml", "m.nml", "--quiet")
-    before = (vcor.folder / "a_summary.csv").read_bytes()
-    vcor.succeeds("run", "a.nml", "m.nml", "--resume", "--quiet")
-    assert (vcor.folder / "a_summary.csv").read_bytes() == before
-    vcor.write(STEEL + RUBBER.replace("1200", "1201"), "m.nml")
-    done = vcor("run", "a.nml", "m.nml", "--resume", "--quiet")
-    assert done.code == 4
-    assert "beta" in done.err
-
-
-def test_merge(vcor):
-    vcor.write(SWEEP, "a.nml")
-    vcor.write(STEEL + RUBBER, "m.nml")
-    vcor.succeeds("run", "a.nml", "m.nml", "--quiet")
-    whole = (vcor.folder / "a_summary.csv").read_bytes()
-    for i in (1, 2):
-        vcor.succeeds("run", "a.nml", "m.nml", "--shard", f"{i}/2", "--quiet", "--output", "parts")
-    vcor.succeeds("merge", "parts/a_shard_1_of_2.h5", "parts/a_shard_2_of_2.h5", "--output", "out")
-    assert (vcor.folder / "out/a_summary.csv").read_bytes() == whole

@@ -37,7 +37,6 @@ def test_names_that_begin_a_pipe(vcor, result, name):
         for words in (
             ["run", "case.nml"],
             ["material", "case.nml"],
-            ["merge", "case.h5"],
         ):
             vcor.refuses(*words, "--output", place, code=USAGE, says=["--output", "pipe"])
     for key in ("stem", "directory"):
@@ -61,7 +60,6 @@ def test_control_characters(vcor, result, control):
     for words in (
         ["run", "case.nml"],
         ["material", "case.nml"],
-        ["merge", "case.h5"],
     ):
         for place in (name, f"{name}/", f"{name}.svg"):
             vcor.refuses(*words, "--output", place, code=USAGE, says="--output")
@@ -69,7 +67,6 @@ def test_control_characters(vcor, result, control):
         ["run", f"{name}.nml"],
         ["run", f"{name}.nml", "--output", "out"],
         ["check", f"{name}.nml"],
-        ["merge", f"{name}.h5"],
         ["run", "case.nml", f"--output={name}"],
     ):
         vcor.refuses(*words, code=USAGE)

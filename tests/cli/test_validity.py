@@ -5,7 +5,7 @@ import re
 
 import h5py
 import pytest
-from program import EXAMPLES, FILE, INPUT, ROOT, SWEEPS, TEXTS, complaint
+from program import EXAMPLES, INPUT, ROOT, SWEEPS, TEXTS
 
 GLASS = (ROOT / "examples" / "steel_on_glass.nml").read_text(encoding="utf-8")
 BEADS = (ROOT / "examples" / "granular_pair.nml").read_text(encoding="utf-8")
@@ -316,7 +316,7 @@ VELOCITIES = "&sweep parameter = 'impact.velocity', values = 0.01, 0.1, 1, 10, 1
 
 
 def test_sweep(vcor):
-    """How many, by which measure, where: the same from one run and from its shards."""
+    """How many, by which measure, where."""
     vcor.write(SLS + VELOCITIES + "&sweep parameter = 'sphere.radius', values = 0.002, 0.01 /\n")
     out = vcor.succeeds("run", "case.nml", "--output", "out")
     found = re.search(r"^  validity: (.*)\n((?:    .*\n)+)", out, re.MULTILINE)
@@ -335,15 +335,6 @@ def test_sweep(vcor):
             ends = [text and float(text) for text in re.search(line, found[2]).groups()]
             assert ends[0] == velocity[rows].min() and ends[1] in (None, velocity[rows].max())
             assert ends[2] == radius[columns].min() and ends[3] in (None, radius[columns].max())
-    for number in (1, 2):
-        part = vcor.succeeds("run", "case.nml", "--output", "out", "--shard", f"{number}/2")
-        assert "validity" not in part
-    merged = vcor.succeeds("merge", "out/case_shard_1_of_2.h5", "out/case_shard_2_of_2.h5",
-                           "--output", "merged")
-    assert found[0] in merged
-    with h5py.File(vcor.folder / "merged" / "case.h5") as file:
-        assert (file["summary/validity"].asstr()[:] == level).all()
-        assert (file["summary/validity_cause"].asstr()[:] == cause).all()
 
 
 def test_sweep_of_bare_numbers(vcor):
@@ -363,31 +354,6 @@ def test_points_without_result(vcor):
     done = vcor("run", "case.nml", "--print", "validity,validity_cause,contact_ratio")
     assert done.out.splitlines()[0] == "none none nan"
     assert "1 of 2 points outside" in done.err
-
-
-def test_resume(vcor):
-    """Texts are read back as they were."""
-    vcor.write(SLS + VELOCITIES)
-    vcor.succeeds("run", "case.nml", "--output", "out")
-    whole = (vcor.folder / "out" / "case_summary.csv").read_bytes()
-    (vcor.folder / "out" / "case_summary.csv").unlink()
-    out = vcor.succeeds("run", "case.nml", "--output", "out", "--resume")
-    assert (vcor.folder / "out" / "case_summary.csv").read_bytes() == whole
-    assert "  validity: " in out
-
-
-@pytest.mark.parametrize("shard", [[], ["--shard", "1/1"]])
-def test_results_of_a_former_version(vcor, shard):
-    """Without these columns: one clear line."""
-    vcor.write(SLS + VELOCITIES)
-    vcor.succeeds("run", "case.nml", "--output", "out", *shard)
-    (path,) = (vcor.folder / "out").glob("*.h5")
-    with h5py.File(path, "r+") as file:
-        del file["summary/contact_ratio"], file["summary/validity"]
-    done = vcor("run", "case.nml", "--output", "out", "--resume", *shard)
-    complaint(done, FILE, ["contact_ratio", "earlier version"])
-    if shard:
-        complaint(vcor("merge", path.relative_to(vcor.folder)), FILE, ["contact_ratio", "earlier version"])
 
 
 # Notes on input

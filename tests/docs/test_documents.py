@@ -214,13 +214,9 @@ def test_the_sweep_of_the_page(folder):
     (folder / "case.nml").write_text(f"{case}\n{groups}")
     shell(folder, "vcor run case.nml --quiet; vcor run examples/paper/sls.nml --quiet")
     scripts = blocks("docs/sweeps.md", "python") + blocks("docs/output.md", "python")
-    # what looks into a sweep at work finds none here
-    scripts = [script for script in scripts if ".part." not in script]
     assert len(scripts) >= 5
     env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
     for script in scripts:
-        if ".part." in script:
-            continue  # the file of a sweep that runs: tests/cli/test_resume.py opens one
         # a figure wants a screen and Matplotlib
         text = re.sub(r"\.plot\(.*\)", "", script)
         done = subprocess.run(

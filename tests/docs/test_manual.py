@@ -45,7 +45,7 @@ def test_man_has_nothing_to_complain_about(run, name):
 def test_document(document, vcor, run):
     assert run(vcor, "--version") == f"{document['program']} {document['version']}\n"
     assert [c["code"] for c in document["exit_codes"]] == list(range(6))
-    assert [c["name"] for c in document["commands"]][:2] == ["run", "merge"]
+    assert [c["name"] for c in document["commands"]][:2] == ["run", "check"]
     velocity = document["groups"][1]["keys"][0]
     assert velocity["name"] == "velocity"
     assert (velocity["type"], velocity["unit"], velocity["range"]) == ("real", "m/s", "> 0")

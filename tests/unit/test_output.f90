@@ -2,7 +2,7 @@
 program test_output
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
       & ieee_value
-   use, intrinsic :: iso_c_binding, only : c_associated
+   use, intrinsic :: iso_c_binding, only : c_associated, c_loc, c_ptr
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_t
    use vcor_io_table, only : add_column, add_dimension, column_of, coordinate_row, &
@@ -14,12 +14,22 @@ program test_output
    use vcor_text, only : integer_text
    use vcor_io_path, only : check_name, directory_exists, file_exists, join_path, &
       make_directory, quoted_path
-   use vcor_io_posix, only : c_mkdtemp, c_text
+   use vcor_io_posix, only : c_text
    use vcor_io_number, only : decimal_text
    use vcor_kinds, only : wp
    use vcor_version, only : version
    use vcor_test, only : check, check_contains, check_text, finish, suite
    implicit none
+
+   interface
+      !> Make a folder with a new name; null on failure
+      function c_mkdtemp(template) result(place) bind(c, name="mkdtemp")
+         import :: c_ptr
+         !> Address of a name that ends with XXXXXX and NUL; returns the name there
+         type(c_ptr), intent(in), value :: template
+         type(c_ptr) :: place
+      end function c_mkdtemp
+   end interface
 
    character(len=*), parameter :: lf = achar(10), cr = achar(13)
    !> Folder for the files of this test, removed at its end
@@ -49,13 +59,13 @@ contains
    !> A folder of our own, with a blank and a letter beyond ASCII in its name
    subroutine make_folder()
       character(len=1000) :: parent
-      character(len=:), allocatable :: template
+      character(len=:), allocatable, target :: template
       integer :: status
 
       call get_environment_variable("TMPDIR", parent, status=status)
       if (status /= 0 .or. len_trim(parent) == 0) parent = "/tmp"
       template = c_text(join_path(parent, "vcor test é XXXXXX"))
-      call check(c_associated(c_mkdtemp(template)), "the folder of the test can be made")
+      call check(c_associated(c_mkdtemp(c_loc(template))), "the folder of the test can be made")
       folder = template(:len(template)-1)
    end subroutine make_folder
 
@@ -231,9 +241,20 @@ contains
 
       call create_file(file, path, error)
       call put(file, "other", error)
+      call write_file(path, "another", error)
+      call check_failed(error, "new.txt.tmp' exists: another vcor is writing it", "two at once")
+      call check_temporaries(1, "the file of the other one stays")
       call discard(file)
       call check_text(content(path), "first"//lf//"second", "a file given up changes nothing")
       call check_temporaries(0, "after giving up")
+
+      call create_file(file, path, error)
+      call put(file, "mine", error)
+      call execute_command_line("rm "//quoted_path(path//".tmp"))
+      call write_file(path, "theirs", error)
+      call commit(file, error)
+      call check_failed(error, "was deleted or replaced", "a file that another one has taken")
+      call check_text(content(path), "theirs", "is not given the name")
 
       call write_file(path//"   ", "third", error)
       call check(.not. allocated(error), "padding of a path does not count")
@@ -300,13 +321,13 @@ contains
       call check_failed(error, "it is a device or a pipe", "link to a device")
    end subroutine test_links
 
-   !> Names as long as the system takes them, and longer
+   !> Names as long as the system takes them, with the ending of a temporary name, and longer
    subroutine test_long_paths()
       type(error_t), allocatable :: error
       character(len=:), allocatable :: path
       integer :: i
 
-      path = join_path(folder, repeat("n", 255))
+      path = join_path(folder, repeat("n", 251))
       call write_file(path, "text", error)
       call check(.not. allocated(error), "longest name")
       call write_file(join_path(folder, repeat("n", 256)), "text", error)
@@ -535,7 +556,7 @@ contains
       call check(index(error%message, lf) == 0, what//": message has one line")
    end subroutine check_failed
 
-   !> Check how many private folders there are
+   !> Check how many temporary files there are
    subroutine check_temporaries(expected, what)
       !> How many there should be
       integer, intent(in) :: expected
@@ -543,9 +564,9 @@ contains
       character(len=*), intent(in) :: what
       integer :: code
 
-      call execute_command_line("test $(ls -A "//quoted_path(folder)//" | grep -c '^[.]vcor-') = " &
+      call execute_command_line("test $(ls -A "//quoted_path(folder)//" | grep -c '[.]tmp$') = " &
          & //integer_text(expected), exitstat=code)
-      call check(code == 0, "number of private folders "//what)
+      call check(code == 0, "number of temporary files "//what)
    end subroutine check_temporaries
 
    !> All bytes of a file

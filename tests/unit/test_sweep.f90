@@ -1,4 +1,4 @@
-!> Sweeps: the order of the grid, spacing, what is built per point, parts, threads, interruptions
+!> Sweeps: the order of the grid, spacing, what is built per point, threads, failures
 program test_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_input, error_t
@@ -13,10 +13,9 @@ program test_sweep
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
       status_name, summary_t, values_of
-   use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, &
       solve_points, sweep_t, worker_t
-   use vcor_test_watch, only : stops, watch_t
+   use vcor_test_watch, only : watch_t
    use vcor_number, only : real_text, spaced
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
@@ -39,11 +38,7 @@ program test_sweep
    call test_order()
    call test_grid_of_a_case()
    call test_points()
-   call test_parts_and_threads()
-   call test_reasons()
-   call test_packed_reasons()
-   call test_parts()
-   call test_stop()
+   call test_threads()
    call test_trouble()
    call test_statuses()
    call finish()
@@ -176,55 +171,49 @@ contains
       end do
    end subroutine test_points
 
-   !> In whatever parts, begun by whatever has been done before, by whatever number of threads
-   subroutine test_parts_and_threads()
+   !> The same bits and failures, whatever was there before, with any number of threads
+   subroutine test_threads()
       type(sweep_t) :: sweep
-      type(part_t) :: part
-      type(summary_t) :: one, other, shard
-      type(failures_t) :: reasons, others
+      type(summary_t) :: one, other
+      type(failures_t) :: failures, others
+      type(watch_t) :: watch
       type(error_t), allocatable :: error
-      integer :: i, k, n
+      integer :: i, n, pending
 
       call long_sweep(sweep)
       n = sweep%grid%count()
       call new_summary(one, n, error)
-      call new_summary(other, n, error)
       call check(.not. allocated(error), "there is room")
-      call solve_points(sweep, new_part(n, 1, 1), 1, one, reasons, error)
+      call solve_points(sweep, 1, one, failures, error)
       call check(.not. allocated(error), "solved")
-      do k = 1, 3
-         part = new_part(n, k, 3)
-         call new_summary(shard, part%count(), error)
-         call solve_points(sweep, part, 4, shard, others, error)
-         where (shard%status == point_invalid .or. shard%status == point_failed) &
-            shard%status = point_pending
-         ! what is not there yet is solved again
-         shard%status(::k) = point_pending
-         call other%put_part(part, shard)
+      call new_summary(other, n, error)
+      do i = 1, n, 3
+         call other%put(i, one%row(i))
       end do
-      call check(count(other%status == point_pending) > n/3, "a part is left")
-      call solve_points(sweep, new_part(n, 1, 1), 2, other, others, error)
-      call check(all(one%status == other%status), "the same statuses")
-      do i = 1, size(one%values)
-         associate (a => one%values(i), b => other%values(i), name => one%quantities(i)%name)
-            if (allocated(a%integers)) then
-               call check(all(a%integers == b%integers), "the same "//trim(name))
-            else
-               call check(all(transfer(a%reals, [0]) == transfer(b%reals, [0])), &
-                  "the same bits of "//trim(name))
-            end if
+      pending = count(other%status == point_pending)
+      call solve_points(sweep, 2, other, others, error, watch)
+      call check(watch%count == pending, "points that are pending are solved, once")
+      do i = 1, n
+         call check(all(transfer(one%row(i), [0]) == transfer(other%row(i), [0])), "the same bits")
+      end do
+      call check(failures%count == count(one%status /= contact_separated), "failures are counted")
+      call check(sum(failures%kind(:failures%kinds)%count) == failures%count, "each once")
+      call check(failures%count == others%count .and. failures%kinds == others%kinds, &
+         "the same failures")
+      do i = 1, failures%kinds
+         associate (kind => failures%kind(i), again => others%kind(i))
+            call check(one%status(kind%first) == kind%status, "a point of that status")
+            call check(all(one%status(:kind%first - 1) /= kind%status), "is the first one")
+            call check(kind%count == count(one%status == kind%status), "of so many")
+            call check(kind%first == again%first, "the same first point")
+            call check_text(again%message, kind%message, "the same message")
          end associate
       end do
-      call check(reasons%count == count(one%status /= contact_separated), "failures are counted")
-      call check(reasons%count == others%count .and. reasons%reasons == others%reasons, &
-         "the same failures")
-      do i = 1, reasons%reasons
-         call check(reasons%reason(i)%first == others%reason(i)%first, "the same first point")
-         call check(reasons%reason(i)%count == others%reason(i)%count, "the same number")
-         call check(reasons%reason(i)%message == others%reason(i)%message, "the same words")
-      end do
+      call check(failures%kinds > 0 .and. failures%kind(1)%status == point_invalid, &
+         "some points are invalid")
+      call check_contains(failures%kind(1)%message, "out of range", "the message says why")
       call check(default_threads() >= 1, "there is a thread")
-   end subroutine test_parts_and_threads
+   end subroutine test_threads
 
    !> A sweep of some points, of which some make no impact
    subroutine long_sweep(sweep)
@@ -239,31 +228,6 @@ contains
       call check(.not. allocated(error), "the sweep is built")
    end subroutine long_sweep
 
-   !> A monitor ends a sweep; what is solved stays, and the rest can be solved
-   subroutine test_stop()
-      type(sweep_t) :: sweep
-      type(summary_t) :: summary
-      type(failures_t) :: failures
-      type(watch_t) :: watch
-      type(error_t), allocatable :: error
-      integer :: stopped, n
-
-      call long_sweep(sweep)
-      n = sweep%grid%count()
-      call new_summary(summary, n, error)
-      stops = 0
-      watch%stops_after = 2
-      call solve_points(sweep, new_part(n, 1, 1), 2, summary, failures, error, watch, stopped)
-      call check(stopped == 15 .and. .not. allocated(error), "stopped")
-      call check(watch%count == count(summary%status /= point_pending), "what is finished is told")
-      call check(watch%count > 0 .and. watch%count < n, "some, not all")
-      stops = 0
-      watch%stops_after = huge(n)
-      call solve_points(sweep, new_part(n, 1, 1), 2, summary, failures, error, watch, stopped)
-      call check(stopped == 0, "not stopped")
-      call check(watch%count == n .and. all(summary%status /= point_pending), "all, once")
-   end subroutine test_stop
-
    !> A monitor that cannot keep the results ends the sweep
    subroutine test_trouble()
       type(sweep_t) :: sweep
@@ -276,60 +240,12 @@ contains
       call long_sweep(sweep)
       n = sweep%grid%count()
       call new_summary(summary, n, error)
-      stops = 0
       watch%fails_after = 2
-      call solve_points(sweep, new_part(n, 1, 1), 2, summary, failures, error, watch)
+      call solve_points(sweep, 2, summary, failures, error, watch)
       call check(allocated(error), "failed")
       if (allocated(error)) call check_text(error%message, "injected failure", "for that reason")
       call check(watch%rounds == 2, "at once")
    end subroutine test_trouble
-
-   !> Every point is in one part, the parts are of one size, and no value of a row has a part alone
-   subroutine test_parts()
-      integer, parameter :: points(*) = [1, 7, 12, 100], parts(*) = [1, 2, 3, 5, 10]
-      integer, allocatable :: owners(:)
-      type(part_t) :: part
-      integer :: i, j, n, place
-
-      do i = 1, size(points)
-         do j = 1, size(parts)
-            if (parts(j) > points(i)) cycle
-            allocate (owners(points(i)), source=0)
-            do n = 1, parts(j)
-               part = new_part(points(i), n, parts(j))
-               call check(abs(part%count() - points(i)/parts(j)) <= 1, "parts are of one size")
-               do place = 1, part%count()
-                  owners(part%point(place)) = owners(part%point(place)) + 1
-                  if (place > 1) call check(part%point(place) > part%point(place - 1), "in order")
-               end do
-            end do
-            call check(all(owners == 1), "every point is in one part")
-            deallocate (owners)
-         end do
-      end do
-      part = new_part(100, 3, 10)
-      call check(any(mod([(part%point(i), i = 1, 10)], 10) == 0) &
-         .and. any(mod([(part%point(i), i = 1, 10)], 10) == 5), "a part has all values of a row")
-   end subroutine test_parts
-
-   !> Reasons as numbers and back
-   subroutine test_packed_reasons()
-      type(failures_t) :: one, other, none, both
-
-      call one%note(8, "radius is out of range")
-      call one%note(3, "no separation within 1 s")
-      call other%note(2, "no separation within 2 s")
-      call other%note(9, "no separation within 3 s")
-      call one%note(17, "")
-      call both%add_packed([one%pack(), other%pack(), none%pack()])
-      call both%sort()
-      call check(both%count == 4 .and. both%reasons == 2, "four points, two reasons")
-      call check(both%reason(1)%count == 3 .and. both%reason(1)%first == 2, "three of one")
-      call check_text(trim(both%reason(1)%message), "no separation within 2 s", &
-         "the first one's words")
-      call check_text(trim(both%reason(2)%message), "radius is out of range", "the other")
-      call check(both%inexact%count == 1 .and. both%inexact%first == 17, "and one that is inexact")
-   end subroutine test_packed_reasons
 
    !> Numbers of an outcome but its steps and status
    function values_without_status(outcome) result(values)
@@ -342,23 +258,6 @@ contains
       ! validity and its cause are texts, the steps are counted in any case
       values = values(:size(values) - 4)
    end function values_without_status
-
-   !> Reasons are told apart by their words, not their numbers
-   subroutine test_reasons()
-      type(failures_t) :: failures
-
-      call failures%note(7, "step of 1.0e-3 s")
-      call failures%note(9, "radius of -1")
-      call failures%note(3, "step of 2.5 s")
-      call failures%note(8, "step of 7 s")
-      call failures%note(1, "mass of 0")
-      call failures%sort()
-      call check(failures%count == 5 .and. failures%reasons == 3, "three reasons")
-      call check(all(failures%reason(1:3)%first == [1, 3, 9]), "by their first point")
-      call check(all(failures%reason(1:3)%count == [1, 3, 1]), "counted")
-      call check_text(trim(failures%reason(2)%message), "step of 2.5 s", &
-         "message of the first point")
-   end subroutine test_reasons
 
    !> Names of statuses
    subroutine test_statuses()

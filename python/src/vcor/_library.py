@@ -155,7 +155,6 @@ _ARGUMENTS: dict[str, list[Any]] = {
 for _name, _types in _ARGUMENTS.items():
     getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]
 _library.vcor_free.argtypes = [c_void_p]
-_library.vcor_is_altered.argtypes = [c_char_p]
 _library.vcor_column_of.argtypes = [c_int, c_int, POINTER(ColumnStruct)]
 _library.vcor_library_version.restype = c_char_p
 
@@ -328,8 +327,3 @@ def columns(table: int) -> dict[str, Column]:
     while _library.vcor_column_of(table, len(found), byref(struct)):
         found[struct.column.name] = struct.column
     return found
-
-
-def is_altered(path: str) -> bool:
-    """Whether a file of results ends with a check sum that is not its own."""
-    return bool(_library.vcor_is_altered(os.fsencode(path)))

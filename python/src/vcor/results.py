@@ -14,13 +14,11 @@ from typing import Any
 import h5py
 import xarray as xr
 
-from ._library import Error, FileError, InputError, is_altered
+from ._library import Error, FileError, InputError
 from ._text import printable
 
 #: How files of HDF5 begin
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-#: How a file ends whose check sum proves that no byte of it is damaged
-_SEALED = b"vcorseal"
 #: Processor time in which HDF5 reads any file [s], and what it reads in a second more [bytes]
 _PATIENCE, _PACE = 5, 50_000_000
 #: Largest ratio by which the filters of HDF5 make data smaller (deflate)
@@ -83,17 +81,13 @@ def _check(path: str) -> None:
         with Path(path).open("rb") as file:
             if file.read(len(_HDF5)) != _HDF5:
                 raise InputError(f"{path}: this is no HDF5 file")
-            file.seek(-len(_SEALED), os.SEEK_END)
-            sealed = file.read() == _SEALED
-        if is_altered(path):
-            raise FileError(f"{path}: this file is damaged: its check sum is wrong")
     except FileNotFoundError:
         raise FileError(f"{path}: there is no such file") from None
     except OSError as error:
         if isinstance(error, FileError):
             raise
         raise FileError(f"{path}: {error.strerror}") from None
-    if not sealed and not _survives(path):
+    if not _survives(path):
         raise FileError(f"{path}: this file is damaged: HDF5 cannot read it")
     try:
         for _ in _datasets(path):
@@ -140,7 +134,7 @@ def _datasets(path: str) -> Iterator[h5py.Dataset]:
 
 
 def _survives(path: str) -> bool:
-    """Whether HDF5 comes to an end with a file that nobody vouches for, tried by a child process.
+    """Whether HDF5 comes to an end with a file, tried by a child process.
 
     A damaged text of variable length makes it crash or read for ever.
     """

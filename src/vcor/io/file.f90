@@ -1,17 +1,14 @@
 !> Reads text files as a whole, writes files that appear complete or not at all, and standard output
 !>
-!> A file is written in a private directory `.vcor-XXXXXX` beside its final place, so that renaming
-!> stays within one file system. The random name and the permissions, for the user alone, keep
-!> links, pipes and files of others out. Every status is checked; only then the file is closed and
-!> renamed, with the permissions that the umask leaves. On failure it is removed, and a file that
-!> already had the final name is unchanged.
+!> A file is written under a temporary name, NAME.tmp, beside its final place. It is created
+!> exclusively, written, written through to the disk and renamed, with the permissions that the
+!> umask leaves; every status is checked. So the final name has the old file or the new one, whenever
+!> the process, the disk or the power fails.
 !>
-!>  - An interrupted process leaves nothing under the final name. There is no `fsync`: it takes 2 to
-!>    10 ms per file, as long as a whole impact, and matters only if power fails within seconds. A
-!>    full disk is detected without it.
-!>  - The private directory is remembered, and `remove_scratch` removes it if a signal ends the
-!>    process. A directory left by a killed process may be removed.
-!>  - A symbolic link of the final name is replaced by the file; its target is unchanged.
+!>  - On failure the temporary file is removed. A killed process leaves it behind, and no other run
+!>    writes that file until it is deleted, by hand or by `--resume`: it may be of a run at work.
+!>  - A symbolic link of the final name is replaced by the file; its target is unchanged. One of the
+!>    temporary name is refused.
 !>  - A directory, a device or a pipe of the final name, or a link to one, is refused: `/dev/stdout`
 !>    would otherwise become a file.
 !>  - Trailing blanks of a path are ignored, as by Fortran's `open`.
@@ -19,41 +16,33 @@
 !> Every error is an `error_file` with the path and the reason of the system. Only one thread writes
 !> files at a time.
 module vcor_io_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_null_char, &
-      c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_null_ptr, c_ptr, &
+      c_size_t
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, folder_of, &
+   use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, &
       plain_file_exists, quoted_path, raise_system
-   use vcor_io_posix, only : c_fallocate, c_fclose, c_fileno, c_fopen, c_isatty, c_mkdtemp, &
-      c_rename, c_rmdir, c_text, c_unlink, c_write, errno_interrupted, last_errno, &
-      standard_error, standard_output
+   use vcor_io_posix, only : c_fallocate, c_fclose, c_fileno, c_fopen, c_fsync, c_isatty, &
+      c_rename, c_text, c_unlink, c_write, errno_exists, errno_interrupted, file_at, file_id_t, &
+      last_errno, open_file, same_file_id, standard_error, standard_output
    use vcor_text, only : buffer_t, printable, shortened
    implicit none
    private
 
    public :: read_text_file
-   public :: output_file_t, create_file, put, reserve, close_file, commit, discard, write_file
-   public :: move_file, remove_file, remove_scratch
-   public :: write_stdout, write_terminal, stderr_is_terminal
+   public :: output_file_t, create_file, put, reserve, commit, discard, write_file
+   public :: temporary_name, raise_taken, remove_file
+   public :: write_all, write_stdout, write_terminal, stderr_is_terminal
 
    !> An output file: `create_file`, any number of `put`, then `commit` or `discard`. A procedure
    !> that fails discards the file
    type :: output_file_t
-      !> Path until `commit`, in a private directory
+      !> Path until `commit`
       character(len=:), allocatable :: temporary
       !> Final path
       character(len=:), allocatable :: path
       !> C stream, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
    end type output_file_t
-
-   !> Room for a path, more than the system allows (PATH_MAX of Linux)
-   integer, parameter :: room = 4200
-   !> Name of a file in its private directory
-   character(len=*), parameter :: new_name = '/new'
-   !> Current private directory and the file in it, as C strings; empty if there is none. One file
-   !> is written at a time
-   character(kind=c_char), volatile :: folder(room) = c_null_char, inside(room) = c_null_char
 
    !> Largest file that is read [bytes]; a case has a few hundred bytes, a long Prony series a few
    !> thousand, a table of 10,000 points half a million
@@ -110,31 +99,43 @@ contains
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: name
       integer(c_int) :: reason
-      logical :: made
 
       call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
-      name = folder_of(file%path)
-      ! a longer path is too long for the system, too, which reports it
-      name = c_text(name(:min(len(name), room - 20))//'.vcor-XXXXXX')
-      ! remembered while it is made: mkdtemp writes each name that it tries over the X
-      call remember(name, folder)
-      made = c_associated(c_mkdtemp(folder))
+      file%temporary = temporary_name(file%path)
+      file%stream = c_fopen(c_text(file%temporary), c_text('wx'))
       reason = last_errno()
-      if (made) then
-         name = transfer(folder(:len(name)), name)
-         file%temporary = name(:len(name) - 1)//new_name
-         call remember(c_text(file%temporary), inside)
-         file%stream = c_fopen(c_text(file%temporary), c_text('abx'))
-         reason = last_errno()
+      if (c_associated(file%stream)) return
+      if (reason == errno_exists) then
+         call raise_taken(file%temporary, error)
       else
-         folder(1) = c_null_char
+         call raise_system(error, 'cannot write '//quoted_path(file%path), reason)
       end if
-      if (.not. c_associated(file%stream)) call fail(file, reason, error)
+      ! it belongs to another process
+      deallocate (file%temporary)
    end subroutine create_file
+
+   !> Name of a file while it is written
+   pure function temporary_name(path) result(name)
+      !> Final path
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable :: name
+
+      name = path//'.tmp'
+   end function temporary_name
+
+   !> Raise the error that a temporary file exists
+   subroutine raise_taken(temporary, error)
+      !> Its path
+      character(len=*), intent(in) :: temporary
+      !> Set
+      type(error_t), allocatable, intent(inout) :: error
+
+      call raise(error, error_file, quoted_path(temporary)//' exists: another vcor is writing ' &
+         //'it, or one was killed: delete it')
+   end subroutine raise_taken
 
    !> Write to a file
    subroutine put(file, text, error)
@@ -167,21 +168,6 @@ contains
       if (reason /= 0) call fail(file, reason, error)
    end subroutine reserve
 
-   !> Close a complete file without giving it its final name; the caller discards it afterwards
-   subroutine close_file(file, error)
-      !> Open file; closed on return
-      type(output_file_t), intent(inout) :: file
-      !> Set if the file is not complete; it is discarded then
-      type(error_t), allocatable, intent(out) :: error
-
-      integer(c_int) :: reason, status
-
-      status = c_fclose(file%stream)
-      reason = last_errno()
-      file%stream = c_null_ptr
-      if (status /= 0) call fail(file, reason, error)
-   end subroutine close_file
-
    !> Close a file and give it its final name
    subroutine commit(file, error)
       !> Open file; closed on return
@@ -189,13 +175,35 @@ contains
       !> Set if the file is not complete; it is discarded then
       type(error_t), allocatable, intent(out) :: error
 
-      call close_file(file, error)
-      if (.not. allocated(error)) call move_file(file%temporary, file%path, error)
-      call discard(file)
+      type(file_id_t) :: written, named
+      integer(c_int) :: reason, status
+
+      status = c_fsync(c_fileno(file%stream))
+      reason = last_errno()
+      written = open_file(c_fileno(file%stream))
+      named = file_at(file%temporary, follows=.false.)
+      if (.not. same_file_id(written, named)) then
+         call raise(error, error_file, 'cannot write '//quoted_path(file%path)//': ' &
+            //quoted_path(file%temporary)//' was deleted or replaced while it was written')
+         ! the name is another's
+         deallocate (file%temporary)
+         call discard(file)
+         return
+      end if
+      if (status == 0) then
+         status = c_fclose(file%stream)
+         reason = last_errno()
+         file%stream = c_null_ptr
+      end if
+      if (status == 0) then
+         status = c_rename(c_text(file%temporary), c_text(file%path))
+         reason = last_errno()
+      end if
+      if (status == 0) deallocate (file%temporary)
+      if (status /= 0) call fail(file, reason, error)
    end subroutine commit
 
-   !> Discard a file: remove its private directory, and leave the final path as it is. A file that
-   !> is not open is ignored
+   !> Discard a file, and leave the final path as it is. A file that is not open is ignored
    subroutine discard(file)
       !> Open file; closed on return
       type(output_file_t), intent(inout) :: file
@@ -205,11 +213,8 @@ contains
       if (c_associated(file%stream)) ignored = c_fclose(file%stream)
       file%stream = c_null_ptr
       if (.not. allocated(file%temporary)) return
-      ignored = c_unlink(c_text(file%temporary))
-      ignored = c_rmdir(c_text(folder_of(file%temporary)))
+      call remove_file(file%temporary)
       deallocate (file%temporary)
-      folder(1) = c_null_char
-      inside(1) = c_null_char
    end subroutine discard
 
    !> Write a file in one call
@@ -269,21 +274,6 @@ contains
       call raise_system(error, 'cannot write '//quoted_path(file%path), reason)
    end subroutine fail
 
-   !> Rename a file, replacing one of the new name
-   subroutine move_file(from, to, error)
-      character(len=*), intent(in) :: from
-      !> New path, in the same directory
-      character(len=*), intent(in) :: to
-      !> Set on failure
-      type(error_t), allocatable, intent(out) :: error
-
-      integer(c_int) :: reason
-
-      if (c_rename(c_text(from), c_text(to)) == 0) return
-      reason = last_errno()
-      call raise_system(error, 'cannot write '//quoted_path(to), reason)
-   end subroutine move_file
-
    !> Remove a file if it exists
    subroutine remove_file(path)
       character(len=*), intent(in) :: path
@@ -292,28 +282,6 @@ contains
 
       ignored = c_unlink(c_text(path))
    end subroutine remove_file
-
-   !> Store a path as a C string, first character last: a signal in between finds an empty one
-   subroutine remember(path, place)
-      character(len=*), intent(in) :: path
-      !> Storage
-      character(kind=c_char), volatile, intent(inout) :: place(room)
-
-      integer :: i
-
-      do i = len(path), 1, -1
-         place(i) = path(i:i)
-      end do
-   end subroutine remember
-
-   !> Remove the current private directory and the file in it, with calls allowed in signal handlers
-   !> only
-   subroutine remove_scratch()
-      integer(c_int) :: ignored
-
-      if (inside(1) /= c_null_char) ignored = c_unlink(inside)
-      if (folder(1) /= c_null_char) ignored = c_rmdir(folder)
-   end subroutine remove_scratch
 
    !> Write to standard output, unbuffered, so that a full disk or a closed output is detected
    subroutine write_stdout(text, error)

@@ -12,38 +12,39 @@
 !> count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is UTF-8 of
 !> variable length, which Python reads as `str`. A slash in a name becomes `_`.
 !>
+!> Datasets of numbers are in chunks with the check sums of HDF5's filter fletcher32, so that
+!> reading damaged numbers is an error.
+!>
 !> HDF5 1.10 crashes when it closes a file that it could not write, as on a full disk. So the disk
-!> space of the file is allocated before HDF5 writes to it, in the private directory of
-!> `vcor_io_file`. A seal (`vcor_io_seal`) follows at the end. Objects have no time stamps: equal
+!> space of the file is allocated before HDF5 writes to it. Objects have no time stamps: equal
 !> tables give equal bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_char, c_int64_t, c_loc, c_null_char, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_char, c_loc, c_null_char, c_ptr
    use, intrinsic :: iso_fortran_env, only : int64
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
-   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5d_alloc_time_early_f, h5dclose_f, &
-      h5dcreate_f, h5dwrite_f, h5eset_auto_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
-      h5f_libver_v18_f, h5fclose_f, h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, &
+      h5dwrite_f, h5eset_auto_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
+      h5f_libver_v110_f, h5fclose_f, h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
       h5iis_valid_f, h5open_f, h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, &
       h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, &
       h5pclose_f, h5pcopy_f, h5pcreate_f, &
-      h5pset_alloc_time_f, h5pset_fclose_degree_f, h5pset_fill_value_f, h5pset_libver_bounds_f, &
+      h5pset_chunk_f, h5pset_fclose_degree_f, h5pset_fill_value_f, h5pset_fletcher32_f, &
+      h5pset_libver_bounds_f, &
       h5pset_link_creation_order_f, h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, &
       h5screate_f, h5screate_simple_f, h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, &
       h5t_native_integer, h5t_std_i32le, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, &
       hsize_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : commit, create_file, discard, output_file_t, put, reserve
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, reserve
    use vcor_io_path, only : quoted_path
-   use vcor_io_seal, only : seal_of
    use vcor_io_table, only : column_t, integer_column, real_column, table_t, &
       text_column, text_value
    use vcor_kinds, only : wp
-   use vcor_sweep_part, only : part_t
-   use vcor_text, only : integer_text, link_name
+   use vcor_text, only : link_name
    implicit none
    private
 
-   public :: write_hdf5, fill_hdf5, begin_hdf5, end_hdf5, c_get_offset
+   public :: write_hdf5
 
    !> An invalid identifier
    integer(hid_t), parameter :: nothing = -1_hid_t
@@ -54,21 +55,9 @@ module vcor_io_hdf5
       !> Property lists for creating groups and datasets
       integer(hid_t) :: group_creation = nothing, dataset_creation = nothing
       integer(hid_t) :: text_type = nothing
-      !> Parts of the file that its seal leaves out, as in `seal_of`
-      integer(int64), allocatable :: left_out(:, :)
       !> The first failure; unallocated if there is none
       character(len=:), allocatable :: fault
    end type writer_t
-
-   interface
-      !> Position in the file of the numbers of a contiguous dataset
-      function c_get_offset(dataset) result(offset) bind(c, name='H5Dget_offset')
-         import :: c_int64_t
-         integer(c_int64_t), intent(in), value :: dataset
-         !> Number of bytes before it; all bits set if there is none
-         integer(c_int64_t) :: offset
-      end function c_get_offset
-   end interface
 
 contains
 
@@ -96,37 +85,28 @@ contains
    end subroutine end_hdf5
 
    !> Write tables to a file, which appears complete or, on failure, stays as it was
-   subroutine write_hdf5(filename, tables, error, data)
+   subroutine write_hdf5(filename, tables, error)
       !> Name of the file; an existing one is replaced
       character(len=*), intent(in) :: filename
-      !> Tables as for `fill_hdf5`
+      !> Tables, shape (n), n > 0; version, title and case of the first one describe the file
       type(table_t), intent(in) :: tables(:)
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Check sum of the data files of the case; empty if there are none
-      character(len=*), intent(in), optional :: data
 
       type(output_file_t) :: file
 
       call create_file(file, filename, error)
-      if (.not. allocated(error)) call fill_hdf5(file, tables, error, data)
+      if (.not. allocated(error)) call fill(file, tables, error)
       if (.not. allocated(error)) call commit(file, error)
    end subroutine write_hdf5
 
-   !> Write tables to an open file, and the seal
-   subroutine fill_hdf5(file, tables, error, data, part)
+   !> Write tables to an open file
+   subroutine fill(file, tables, error)
       !> Open file; discarded on failure
       type(output_file_t), intent(inout) :: file
-      !> Tables, shape (n), n > 0; version, title and case of the first one describe the file.
-      !> Columns without values only get their space, which the caller fills later and the seal
-      !> leaves out
       type(table_t), intent(in) :: tables(:)
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Check sum of the data files of the case; for a whole sweep written only if not empty
-      character(len=*), intent(in), optional :: data
-      !> Part of a sweep in the rows; absent: all of it
-      type(part_t), intent(in), optional :: part
 
       type(writer_t) :: writer
       integer :: i, ignored
@@ -139,15 +119,6 @@ contains
             call put_text(writer, writer%file, 'version', tables(1)%version)
             call put_text(writer, writer%file, 'title', tables(1)%title)
             call put_text(writer, writer%file, 'case', tables(1)%case_text)
-            if (present(data)) then
-               if (data /= '' .or. present(part)) &
-                  call put_text(writer, writer%file, 'data', data)
-            end if
-            if (present(part)) then
-               call put_text(writer, writer%file, 'points', integer_text(part%points))
-               call put_text(writer, writer%file, 'shard', integer_text(part%number))
-               call put_text(writer, writer%file, 'shards', integer_text(part%parts))
-            end if
             do i = 1, size(tables)
                call put_table(writer, tables(i))
             end do
@@ -165,8 +136,7 @@ contains
             'cannot write '//quoted_path(file%path)//': HDF5 cannot '//writer%fault)
          call discard(file)
       end if
-      if (.not. allocated(error)) call put(file, seal_of(file%temporary, writer%left_out), error)
-   end subroutine fill_hdf5
+   end subroutine fill
 
    !> Create a file, with the property lists and the type that all its objects share
    subroutine begin_file(writer, file, bytes, error)
@@ -183,7 +153,6 @@ contains
       integer :: ignored, order, status(13)
 
       order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
-      allocate (writer%left_out(2, 0))
       call h5pcreate_f(h5p_file_create_f, creation, status(1))
       call h5pset_link_creation_order_f(creation, order, status(2))
       call h5pset_obj_track_times_f(creation, .false., status(3))
@@ -193,8 +162,9 @@ contains
       call h5pcreate_f(h5p_dataset_create_f, writer%dataset_creation, status(7))
       call h5pset_obj_track_times_f(writer%dataset_creation, .false., status(8))
       call h5pcreate_f(h5p_file_access_f, access, status(9))
-      ! from 1.8 on HDF5 has check sums of its metadata
-      call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_v18_f, status(10))
+      ! from 1.8 on HDF5 has check sums of its metadata, from 1.10 on the only chunk of a dataset
+      ! needs no index (an index of 1.8 has bytes that are never set)
+      call h5pset_libver_bounds_f(access, h5f_libver_v110_f, h5f_libver_v110_f, status(10))
       call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(11))
       call h5tcopy_f(h5t_string, writer%text_type, status(12))
       call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status(13))
@@ -218,8 +188,9 @@ contains
       type(table_t), intent(in) :: tables(:)
       integer(int64) :: bytes
 
-      ! upper bounds of HDF5's own space for a dataset and for a text
-      integer(int64), parameter :: per_dataset = 4096_int64, per_text = 44_int64
+      ! upper bounds of HDF5's own space for a dataset, for a chunk in its index, and for a text
+      integer(int64), parameter :: per_dataset = 4096_int64, per_chunk = 512_int64, &
+         per_text = 44_int64
       integer :: i, j
 
       bytes = 0
@@ -227,10 +198,10 @@ contains
          associate (table => tables(j))
             bytes = bytes + 65536_int64 + len(table%case_text, kind=int64)
             do i = 1, size(table%dimensions)
-               bytes = bytes + bytes_of_column(table%dimensions(i))
+               bytes = bytes + bytes_of_column(table%dimensions(i), [table%dimensions(i)%length])
             end do
             do i = 1, size(table%columns)
-               bytes = bytes + bytes_of_column(table%columns(i))
+               bytes = bytes + bytes_of_column(table%columns(i), table%dimensions%length)
             end do
          end associate
       end do
@@ -238,17 +209,46 @@ contains
    contains
 
       !> Space of one column
-      pure function bytes_of_column(column) result(bytes)
+      pure function bytes_of_column(column, lengths) result(bytes)
          type(column_t), intent(in) :: column
+         !> Lengths of its dimensions
+         integer, intent(in) :: lengths(:)
          integer(int64) :: bytes
 
-         bytes = 8_int64
-         if (column%kind == integer_column) bytes = 4_int64
-         if (column%kind == text_column) bytes = column%width + per_text
-         if (is_uniform(column)) bytes = 0_int64
-         bytes = per_dataset + bytes*column%length
+         integer(int64) :: chunks
+         integer :: chunk(size(lengths))
+
+         if (is_uniform(column)) then
+            bytes = 0_int64
+         else if (column%kind == text_column) then
+            bytes = (column%width + per_text)*column%length
+         else
+            chunk = chunk_of(lengths)
+            chunks = product(int((lengths + chunk - 1)/chunk, int64))
+            bytes = chunks*(product(int(chunk, int64))*merge(8, 4, column%kind == real_column) &
+               + per_chunk)
+         end if
+         bytes = per_dataset + bytes
       end function bytes_of_column
    end function bytes_of
+
+   !> Lengths of a chunk: all of a small dataset, of a large one equal parts of about a megabyte,
+   !> divided along the slowest dimensions
+   pure function chunk_of(lengths) result(chunk)
+      !> Lengths of the dimensions
+      integer, intent(in) :: lengths(:)
+      integer :: chunk(size(lengths))
+
+      integer, parameter :: largest = 131072
+      integer :: i, parts, room
+
+      room = largest
+      do i = size(lengths), 1, -1
+         parts = max(1, (lengths(i) + room - 1)/room)
+         chunk(i) = max(1, (lengths(i) + parts - 1)/parts)
+         room = max(1, room/chunk(i))
+      end do
+   end function chunk_of
 
    !> Write a table as a group
    subroutine put_table(writer, table)
@@ -303,14 +303,12 @@ contains
       integer(hid_t), intent(out) :: dataset
 
       integer(hid_t) :: creation, space, type_id
+      integer(hsize_t) :: chunk(size(lengths))
       integer :: status
-      logical :: is_filled, is_room
+      logical :: is_filled
 
       dataset = nothing
       if (allocated(writer%fault)) return
-      ! values that the caller writes later need contiguous space
-      is_room = .not. allocated(column%reals)
-      if (column%kind /= real_column) is_room = size(column%integers) < column%length
       select case (column%kind)
       case (real_column)
          type_id = h5t_ieee_f64le
@@ -325,8 +323,13 @@ contains
       is_filled = is_uniform(column)
       call h5pcopy_f(writer%dataset_creation, creation, status)
       if (is_filled) call set_fill_text(column, type_id, creation, status)
-      if (is_room) call h5pset_alloc_time_f(creation, h5d_alloc_time_early_f, status)
-      call note(writer, status, "set the fill value of '"//column%name//"'")
+      if (column%kind /= text_column .and. column%length > 0) then
+         chunk = int(chunk_of(lengths), hsize_t)
+         call h5pset_chunk_f(creation, size(chunk), chunk(size(chunk):1:-1), status)
+         call note(writer, status, "set the chunks of '"//column%name//"'")
+         call h5pset_fletcher32_f(creation, status)
+      end if
+      call note(writer, status, "set the properties of '"//column%name//"'")
       call h5dcreate_f(group, link_name(column%name), type_id, space, dataset, status, &
          dcpl_id=creation)
       call note(writer, status, "create '"//column%name//"'")
@@ -335,7 +338,7 @@ contains
       if (allocated(writer%fault)) return
 
       ! an array of size 0 has no address
-      if (column%length > 0 .and. .not. (is_filled .or. is_room)) then
+      if (column%length > 0 .and. .not. is_filled) then
          select case (column%kind)
          case (real_column)
             call h5dwrite_f(dataset, h5t_native_double, c_loc(column%reals), status)
@@ -346,7 +349,6 @@ contains
          end select
          call note(writer, status, "write '"//column%name//"'")
       end if
-      if (is_room) call leave_out(writer, column, dataset)
       if (column%unit /= '') call put_text(writer, dataset, 'units', column%unit)
       call put_text(writer, dataset, 'long_name', column%long_name)
    end subroutine put_column
@@ -404,25 +406,6 @@ contains
       end do
       call h5dwrite_f(dataset, type_id, c_loc(places), status)
    end subroutine write_texts
-
-   !> Leave the numbers of a dataset out of the seal
-   subroutine leave_out(writer, column, dataset)
-      type(writer_t), intent(inout) :: writer
-      type(column_t), intent(in) :: column
-      !> Contiguous dataset
-      integer(hid_t), intent(in) :: dataset
-
-      integer(int64) :: bytes, offset
-      integer :: below
-
-      offset = c_get_offset(int(dataset, int64))
-      call note(writer, merge(0, -1, offset >= 0), "find '"//column%name//"'")
-      bytes = int(merge(8, 4, column%kind == real_column), int64)*column%length
-      ! in ascending order, which may differ from that of HDF5
-      below = count(writer%left_out(1, :) < offset)
-      writer%left_out = reshape([writer%left_out(:, :below), offset, bytes, &
-         writer%left_out(:, below + 1:)], [2, size(writer%left_out, 2) + 1])
-   end subroutine leave_out
 
    !> Write a text attribute
    subroutine put_text(writer, object, name, text)

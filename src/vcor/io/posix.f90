@@ -1,7 +1,7 @@
 !> System calls for files: interfaces to C and POSIX, for `vcor_io` only
 !>
 !> Fortran's own units are not sufficient: gfortran writes its buffer when a unit is closed and does
-!> not report a full disk then; it has no rename, directories, exclusive creation or locks. All
+!> not report a full disk then; it has no rename, directories or exclusive creation. All
 !> functions have their C prototypes, none is variadic. A path ends with NUL (`c_text`); a `status`
 !> is 0 on success. Two functions exist on Linux only: `__errno_location` (`__error` on macOS) and
 !> `statx`.
@@ -11,24 +11,20 @@ module vcor_io_posix
    implicit none
    private
 
-   public :: c_fopen, c_fclose, c_fileno, c_rename, c_unlink, c_mkdtemp, c_rmdir, c_mkdir, &
-      c_realpath, longest_path
-   public :: c_write, c_isatty, c_fallocate, c_pwrite, c_fsync, c_lockf, c_link
-   public :: standard_output, standard_error, all_permissions, lock_alone
-   public :: last_errno, errno_exists, errno_interrupted, errno_locked, system_reason
+   public :: c_fopen, c_fclose, c_fileno, c_rename, c_unlink, c_mkdir, c_realpath, longest_path
+   public :: c_write, c_isatty, c_fallocate, c_truncate, c_fsync
+   public :: standard_output, standard_error, all_permissions
+   public :: last_errno, errno_exists, errno_interrupted, system_reason
    public :: c_text, fortran_text
    public :: file_id_t, file_at, open_file, same_file_id
    public :: nothing_there, plain_file, folder, something_else
 
    !> File descriptors
    integer(c_int), parameter :: standard_output = 1, standard_error = 2
-   !> Values of `errno`: interrupted by a signal (EINTR), locked by another process (EAGAIN), name
-   !> exists (EEXIST)
-   integer(c_int), parameter :: errno_interrupted = 4, errno_locked = 11, errno_exists = 17
+   !> Values of `errno`: interrupted by a signal (EINTR), name exists (EEXIST)
+   integer(c_int), parameter :: errno_interrupted = 4, errno_exists = 17
    !> Permissions rwxrwxrwx, reduced by the umask of the user
    integer(c_int), parameter :: all_permissions = int(o'777', c_int)
-   !> Operation of `c_lockf`: exclusive lock without waiting (F_TLOCK)
-   integer(c_int), parameter :: lock_alone = 2
 
    !> Size of the longest path with its NUL (PATH_MAX) [bytes]
    integer, parameter :: longest_path = 4096
@@ -45,9 +41,9 @@ module vcor_io_posix
    end type file_id_t
 
    interface
-      !> Open a stream to write a file; null on failure. The mode ends with NUL: `abx` creates a
-      !> file with the permissions that the umask leaves, fails if the name exists, and always
-      !> writes at the end of the file, which others may have moved
+      !> Open a stream to write a file; null on failure. The mode ends with NUL: `wx` creates a file
+      !> with the permissions that the umask leaves and fails if the name exists, even as a link
+      !> (O_EXCL); with `a` everything is written at the end of the file, wherever others moved it
       function c_fopen(path, mode) result(stream) bind(c, name='fopen')
          import :: c_char, c_ptr
          character(kind=c_char), intent(in) :: path(*), mode(*)
@@ -75,27 +71,12 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_rename
 
-      !> Remove a file, not a directory; allowed in a signal handler
+      !> Remove a file, not a directory
       function c_unlink(path) result(status) bind(c, name='unlink')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function c_unlink
-
-      !> Make a directory with a new unique name, for the user alone; null on failure. The template
-      !> ends with XXXXXX and NUL and returns the name
-      function c_mkdtemp(template) result(place) bind(c, name='mkdtemp')
-         import :: c_char, c_ptr
-         character(kind=c_char), intent(inout) :: template(*)
-         type(c_ptr) :: place
-      end function c_mkdtemp
-
-      !> Remove an empty directory; allowed in a signal handler
-      function c_rmdir(path) result(status) bind(c, name='rmdir')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: status
-      end function c_rmdir
 
       !> Absolute path without links and dots; null if it does not exist
       function c_realpath(path, resolved) result(place) bind(c, name='realpath')
@@ -141,38 +122,20 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_fallocate
 
-      !> Like `c_write`, at byte `offset` of a file: a checkpoint stores outcomes with it
-      function c_pwrite(descriptor, bytes, count, offset) result(written) bind(c, name='pwrite')
-         import :: c_int, c_int64_t, c_ptr, c_size_t
-         integer(c_int), intent(in), value :: descriptor
-         type(c_ptr), intent(in), value :: bytes
-         integer(c_size_t), intent(in), value :: count
-         integer(c_int64_t), intent(in), value :: offset
-         integer(c_size_t) :: written
-      end function c_pwrite
+      !> Cut a file to a length
+      function c_truncate(path, length) result(status) bind(c, name='truncate')
+         import :: c_char, c_int, c_int64_t
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int64_t), intent(in), value :: length
+         integer(c_int) :: status
+      end function c_truncate
 
-      !> Write a file through to the disk, before a checkpoint is closed
+      !> Write a file through to the disk, before it gets its name
       function c_fsync(descriptor) result(status) bind(c, name='fsync')
          import :: c_int
          integer(c_int), intent(in), value :: descriptor
          integer(c_int) :: status
       end function c_fsync
-
-      !> Lock `length` bytes of a file from the current position, 0 for all, while the process has
-      !> it open: a checkpoint belongs to one process
-      function c_lockf(descriptor, operation, length) result(status) bind(c, name='lockf')
-         import :: c_int, c_int64_t
-         integer(c_int), intent(in), value :: descriptor, operation
-         integer(c_int64_t), intent(in), value :: length
-         integer(c_int) :: status
-      end function c_lockf
-
-      !> Give a file another name in addition; fails if the name exists
-      function c_link(old, new) result(status) bind(c, name='link')
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: old(*), new(*)
-         integer(c_int) :: status
-      end function c_link
 
       !> Get the properties of a file: unlike that of `stat`, this structure of 256 bytes is the
       !> same on all processors

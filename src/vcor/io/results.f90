@@ -12,18 +12,17 @@
 !> if the impact has no result, and by the column in_window.
 module vcor_io_results
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
-   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
-      new_table, real_column, table_t, text_column
+   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, new_table, &
+      real_column, table_t, text_column
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_case_grid, only : axis_t, grid_t
    use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t, &
       summary_t
-   use vcor_text, only : integer_text
    implicit none
    private
 
-   public :: summary_table, history_table, moduli_tables, axis_column, quantity_column
+   public :: summary_table, history_table, moduli_tables
 
    !> Value of in_window if there is no window
    integer, parameter :: unknown = -1
@@ -78,16 +77,13 @@ contains
    end function axis_column
 
    !> Column of a summary, without values
-   function quantity_column(quantity, length, as_numbers) result(column)
+   function quantity_column(quantity, length) result(column)
       type(quantity_t), intent(in) :: quantity
       !> Number of its values
       integer, intent(in) :: length
-      !> Whether to keep the numbers that stand for texts; absent: no
-      logical, intent(in), optional :: as_numbers
       type(column_t) :: column
 
       character(len=label_length), allocatable :: labels(:)
-      integer :: i
 
       if (quantity%labels == '') then
          column = column_of(quantity%name, [integer ::], quantity%unit, quantity%meaning)
@@ -96,14 +92,6 @@ contains
          allocate (labels, source=labels_of(quantity))
          column = column_of(quantity%name, labels, '', quantity%meaning)
          column%integers = [integer ::]
-         if (present(as_numbers)) then
-            column%kind = integer_column
-            column%unit = '1'
-            do i = 1, size(labels)
-               column%long_name = column%long_name//merge(': ', ', ', i == 1) &
-                  //integer_text(quantity%first + i - 1)//' '//trim(labels(i))
-            end do
-         end if
       end if
       column%length = length
    end function quantity_column

@@ -1,16 +1,16 @@
-!> Solve the points of a sweep, or of a part of it, on all ranks and their threads; a single impact
-!> is a sweep of one point
+!> Solve the points of a sweep on all ranks and their threads; a single impact is a sweep of one
+!> point
 !>
 !> A point is the case with some numbers replaced. The problem of the case follows these numbers, so
 !> no point reads, looks up or checks the whole case, or computes the rules of a solver again. A
 !> point that is impossible or cannot be solved has a status instead of numbers and does not stop
 !> the others.
 !>
-!> The work is done in rounds. In a round each rank solves its part of the next points, the first
-!> rank gathers the outcomes, and all ranks agree on the length of the next round and whether there
-!> is one. Outcomes are stored by the place of their point, so they are bitwise the same for any
-!> number of ranks and threads. Points without a result are grouped by reason, and those less
-!> accurate than requested are counted.
+!> The work is done in rounds. In a round the next points are dealt to the ranks, the threads of
+!> each rank solve its share, the first rank gathers the outcomes, and all ranks agree on the length of
+!> the next round and whether there is one. Outcomes are stored by the place of their point, so they
+!> are bitwise the same for any number of ranks and threads. Points without a result are counted by
+!> their status; the message of the first one of each is found by solving it once more.
 !>
 !> Procedures that threads call have no static storage. gfortran 12 keeps the length of a function
 !> result of deferred length there: such a function is called before the threads begin, or by one
@@ -24,20 +24,19 @@ module vcor_sweep_points
    use vcor_case_problem, only : may_contribute, problem_of_case, problem_t
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
-      contact_sticking, trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_number, only : contains_number, interval_t
    use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, rank_count, this_rank
-   use vcor_sweep_part, only : most_threads, new_part, part_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
-      summary_t, values_of
+      row_of, summary_t
    use vcor_text, only : integer_text
    implicit none
    private
 
    public :: sweep_t, new_sweep, worker_t, solve_point
-   public :: failure_t, failures_t, solve_sweep, solve_points, monitor_t, default_threads, clock
+   public :: failure_t, failures_t, solve_sweep, solve_points, monitor_t
+   public :: default_threads, most_threads, clock
 
    !> All impacts of a case; immutable once built, so that threads can share it
    type :: sweep_t
@@ -77,62 +76,55 @@ module vcor_sweep_points
    !> Largest number of points that a thread takes at once
    integer, parameter :: longest_chunk = 16
 
-   !> Largest number of different reasons
-   integer, parameter :: most_reasons = 20
+   !> Largest number of threads of a process
+   integer, parameter :: most_threads = 1024
 
-   !> A reason, of fixed length so that ranks can send it
+   !> Statuses of points without a result
+   integer, parameter :: without_result(*) = &
+      [point_invalid, point_failed, contact_lasting, contact_sticking]
+
+   !> Points of one kind
    type :: failure_t
+      !> Their status
+      integer :: status = point_pending
       integer :: count = 0
-      !> Number of its first point
-      integer :: first = huge(1)
-      !> Message of that point; blank: the estimated error is above the requested accuracy
-      character(len=504) :: message = ''
+      !> Number of the first one
+      integer :: first = 0
+      !> Message of the first one
+      character(len=:), allocatable :: message
    end type failure_t
 
-   !> All reasons
+   !> Points without a result
    type :: failures_t
-      !> Number of points without a result
       integer :: count = 0
-      integer :: reasons = 0
-      !> Reasons; 1 .. `reasons` are in use
-      type(failure_t) :: reason(most_reasons)
-      !> Points with an estimated error above the requested accuracy
+      !> Number of different statuses
+      integer :: kinds = 0
+      !> Points of each status, in the order of their first points; 1 .. `kinds` are in use
+      type(failure_t) :: kind(size(without_result))
+      !> Points with a result of which the estimated error is above the accuracy requested; they
+      !> have no message
       type(failure_t) :: inexact
-   contains
-      procedure :: note, sort, add_packed
-      procedure :: pack => pack_reasons
    end type failures_t
 
-   !> Observer of a sweep: it stores results, shows progress and may stop the sweep
+   !> Observer of a sweep: it stores results and shows progress
    type, abstract :: monitor_t
    contains
       !> Called when points are finished
       procedure(finished_i), deferred :: finished
-      !> Whether the sweep has to stop
-      procedure(stop_code_i), deferred, nopass :: stop_code
    end type monitor_t
 
    abstract interface
       !> Called on the first rank when points are finished
-      subroutine finished_i(self, first, last, count, summary, error)
+      subroutine finished_i(self, places, summary, error)
          import :: error_t, monitor_t, summary_t
          class(monitor_t), intent(inout) :: self
-         !> First place that may have changed
-         integer, intent(in) :: first
-         !> Last place that may have changed
-         integer, intent(in) :: last
-         !> Number of newly finished points between these places
-         integer, intent(in) :: count
-         type(summary_t), intent(inout) :: summary
+         !> The points
+         integer, intent(in) :: places(:)
+         !> All outcomes
+         type(summary_t), intent(in) :: summary
          !> Error that ends the sweep, such as a full disk; unallocated on success
          type(error_t), allocatable, intent(out) :: error
       end subroutine finished_i
-
-      !> Whether the sweep has to stop after the points in progress
-      function stop_code_i() result(code)
-         !> 0 to continue; any other code is passed to the caller of the sweep
-         integer :: code
-      end function stop_code_i
    end interface
 
 contains
@@ -221,24 +213,6 @@ contains
          steps=outcome%steps)
    end subroutine solve_point
 
-   !> Reason why an impact has no coefficient of restitution
-   pure function why_no_result(status) result(reason)
-      integer, intent(in) :: status
-      !> In words; empty if it has one
-      character(len=:), allocatable :: reason
-
-      select case (status)
-      case (contact_separated, contact_resting)
-         reason = ''
-      case (contact_lasting)
-         reason = 'the bodies do not separate within solver.end_time'
-      case (contact_sticking)
-         reason = 'the sphere sticks: all motion dies out in contact'
-      case default
-         reason = 'no result'
-      end select
-   end function why_no_result
-
    !> Default number of threads: the cores that the process may use, or OMP_NUM_THREADS of the
    !> environment
    function default_threads() result(threads)
@@ -270,153 +244,185 @@ contains
       end if
       if (.not. allocated(error)) &
          call new_summary(summary, sweep%grid%count(), error, threads)
-      if (.not. allocated(error)) call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), &
-         threads, summary, failures, error)
+      if (.not. allocated(error)) call solve_points(sweep, threads, summary, failures, error)
    end subroutine solve_sweep
 
-   !> Solve the pending points of a part of a sweep; all ranks call this
-   subroutine solve_points(sweep, part, threads, summary, failures, error, monitor, stopped)
+   !> Solve the pending points of a sweep; all ranks call this
+   subroutine solve_points(sweep, threads, summary, failures, error, monitor)
       type(sweep_t), intent(in) :: sweep
-      !> Part of its points
-      type(part_t), intent(in) :: part
       !> Threads of this rank, > 0; without OpenMP there is one
       integer, intent(in) :: threads
-      !> On the first rank the outcomes at all places of the part; those already there are kept
+      !> On the first rank the outcomes of all points; those already there are kept
       type(summary_t), intent(inout) :: summary
-      !> On the first rank the points without a result, and the reasons
+      !> On the first rank the points without a result
       type(failures_t), intent(out) :: failures
       !> Error that ended the sweep, which may differ between ranks; unallocated on success
       type(error_t), allocatable, intent(out) :: error
       !> Observer of the sweep
       class(monitor_t), intent(inout), optional :: monitor
-      !> Stop code of the monitor if it ended the sweep early, 0 otherwise
-      integer, intent(out), optional :: stopped
 
       !> Working storage of the threads of this rank, kept from round to round
       type(worker_t), allocatable :: workers(:)
       integer, allocatable :: pending(:)
-      real(wp), allocatable :: numbers(:)
+      !> Outcomes of this rank, one point after the other
+      real(wp), allocatable :: rows(:)
       real(wp) :: start
-      integer :: agreed(3), done, length, i
+      integer :: agreed(2), done, length, i
 
-      allocate (pending(0))
-      if (this_rank() == 0) then
-         pending = pack([(i, i=1, part%count())], summary%status == point_pending)
-         do i = 1, part%count()
-            if (any(summary%status(i) == [contact_lasting, contact_sticking])) &
-               call failures%note(part%point(i), why_no_result(summary%status(i)))
-         end do
-      end if
+      allocate (pending(0), workers(threads))
+      if (this_rank() == 0) pending = &
+         pack([(i, i=1, size(summary%status))], summary%status == point_pending)
       pending = from_first_rank(pending)
-      allocate (workers(threads))
       done = 0
       length = min_points*threads*rank_count()
       do
-         ! length of the next round from the first rank; a wish to stop from any rank
-         agreed = [merge(length, 0, this_rank() == 0), stop_code(monitor), &
-            merge(1, 0, allocated(error))]
-         agreed = largest_of_ranks(agreed)
-         if (done == size(pending) .or. any(agreed(2:) /= 0)) exit
+         ! the first rank decides on the length, any rank on an early end
+         agreed = largest_of_ranks([merge(length, 0, this_rank() == 0), &
+            merge(1, 0, allocated(error))])
+         if (done == size(pending) .or. agreed(2) == 1) exit
          start = clock()
          length = min(agreed(1), size(pending) - done)
-         call solve_round(pending(done + 1:done + length))
+         associate (places => pending(done + 1:done + length))
+            call solve_share(sweep, places(dealt(length, this_rank())), workers, rows)
+            rows = gathered(rows)
+            if (this_rank() == 0) then
+               call store(summary, places, rows)
+               if (present(monitor)) call monitor%finished(places, summary, error)
+            end if
+         end associate
          done = done + length
          length = max(min_points*threads*rank_count(), min(growth*length, &
             int(real(length, wp)*round_time/max(clock() - start, epsilon(start)))))
       end do
-      if (agreed(3) /= 0) return
-      if (this_rank() > 0) then
-         numbers = failures%pack()
-      else
-         allocate (numbers(0))
-      end if
-      numbers = gathered(numbers)
-      call failures%add_packed(numbers)
-      call failures%sort()
-      if (.not. present(stopped)) return
-      stopped = agreed(2)
-      ! a stop after the last point has no effect
-      if (this_rank() == 0) then
-         if (.not. any(summary%status == point_pending)) stopped = 0
-      end if
-
-   contains
-
-      !> Solve the points of a round, each rank its part
-      subroutine solve_round(places)
-         !> Places of the points of the round
-         integer, intent(in) :: places(:)
-
-         type(part_t) :: own
-         !> Outcomes as numbers, a column for each point of `own`
-         real(wp), allocatable :: rows(:, :)
-         real(wp), allocatable :: numbers(:)
-         integer :: columns, team, chunk, count, i, j, k
-
-         own = new_part(size(places), this_rank() + 1, rank_count())
-         columns = size(values_of(outcome_t()))
-         allocate (rows(columns, own%count()))
-         team = max(1, min(threads, own%count()))
-         ! small enough for all threads to end at about the same time
-         chunk = max(1, min(longest_chunk, own%count()/(8*team)))
-!$omp parallel default(none) num_threads(team) &
-!$omp shared(sweep, part, own, places, chunk, workers, rows, failures, monitor)
-         block
-            type(outcome_t) :: outcome
-            type(error_t), allocatable :: trouble
-            integer :: point, thread
-
-            thread = 1
-!$          thread = omp_get_thread_num() + 1
-!$omp do schedule(dynamic, chunk)
-            do j = 1, size(rows, 2)
-               if (stop_code(monitor) /= 0) then
-                  rows(:, j) = values_of(outcome_t(status=point_pending))
-                  cycle
-               end if
-               point = part%point(places(own%point(j)))
-               call solve_point(sweep, point, workers(thread), outcome, trouble)
-               rows(:, j) = values_of(outcome)
-               if (any(outcome%status == [contact_separated, contact_resting]) &
-                   .and. .not. outcome%misses()) cycle
-!$omp critical (vcor_failures)
-               if (allocated(trouble)) then
-                  call failures%note(point, trouble%message)
-               else
-                  call failures%note(point, why_no_result(outcome%status))
-               end if
-!$omp end critical (vcor_failures)
-            end do
-!$omp end do
-         end block
-!$omp end parallel
-         numbers = gathered(reshape(rows, [size(rows)]))
-         if (this_rank() > 0) return
-         count = 0
-         k = 0
-         do i = 1, rank_count()
-            own = new_part(size(places), i, rank_count())
-            do j = 1, own%count()
-               call summary%put(places(own%point(j)), numbers(k + 1:k + columns))
-               if (nint(numbers(k + columns)) /= point_pending) count = count + 1
-               k = k + columns
-            end do
-         end do
-         if (present(monitor)) call monitor%finished(places(1), places(size(places)), count, &
-            summary, error)
-      end subroutine solve_round
+      if (agreed(2) == 0 .and. this_rank() == 0) call count_failures(sweep, summary, failures)
    end subroutine solve_points
 
-   !> Stop code of a monitor, if there is one
-   function stop_code(monitor) result(code)
-      !> Observer of the sweep
-      class(monitor_t), intent(in), optional :: monitor
-      !> 0 to continue
-      integer :: code
+   !> Points of a round that are dealt to a rank: each rank has one of every N consecutive points,
+   !> not always the same one, or a rank would have a single value of the last parameter where N
+   !> points are a row of the grid
+   function dealt(points, rank) result(share)
+      !> Number of points of the round
+      integer, intent(in) :: points
+      !> Index of the rank, from 0
+      integer, intent(in) :: rank
+      !> Places in the round, from 1
+      integer, allocatable :: share(:)
 
-      code = 0
-      if (present(monitor)) code = monitor%stop_code()
-   end function stop_code
+      integer :: i
+
+      associate (ranks => rank_count())
+         share = pack([(i, i=1, points)], &
+            [(mod(i - 1 + (i - 1)/ranks, ranks) == rank, i=1, points)])
+      end associate
+   end function dealt
+
+   !> Solve points on the threads of this rank
+   subroutine solve_share(sweep, points, workers, numbers)
+      type(sweep_t), intent(in) :: sweep
+      integer, intent(in) :: points(:)
+      !> Working storage, one for each thread
+      type(worker_t), intent(inout) :: workers(:)
+      !> Outcomes from `row_of`, one point after the other
+      real(wp), allocatable, intent(out) :: numbers(:)
+
+      real(wp), allocatable :: rows(:, :)
+      integer :: team, chunk, i
+
+      allocate (rows(size(row_of(outcome_t())), size(points)))
+      team = max(1, min(size(workers), size(points)))
+      ! small enough for all threads to end at about the same time
+      chunk = max(1, min(longest_chunk, size(points)/(8*team)))
+!$omp parallel default(none) num_threads(team) shared(sweep, points, chunk, workers, rows)
+      block
+         type(outcome_t) :: outcome
+         type(error_t), allocatable :: trouble
+         integer :: thread
+
+         thread = 1
+!$       thread = omp_get_thread_num() + 1
+!$omp do schedule(dynamic, chunk)
+         do i = 1, size(points)
+            call solve_point(sweep, points(i), workers(thread), outcome, trouble)
+            rows(:, i) = row_of(outcome)
+         end do
+!$omp end do
+      end block
+!$omp end parallel
+      numbers = reshape(rows, [size(rows)])
+   end subroutine solve_share
+
+   !> Store the outcomes of a round
+   subroutine store(summary, places, numbers)
+      type(summary_t), intent(inout) :: summary
+      !> Points of the round
+      integer, intent(in) :: places(:)
+      !> Outcomes of all ranks, one rank after the other
+      real(wp), intent(in) :: numbers(:)
+
+      integer, allocatable :: share(:)
+      integer :: columns, i, j, k
+
+      columns = size(numbers)/size(places)
+      k = 0
+      do i = 0, rank_count() - 1
+         share = dealt(size(places), i)
+         do j = 1, size(share)
+            call summary%put(places(share(j)), numbers(k + 1:k + columns))
+            k = k + columns
+         end do
+      end do
+   end subroutine store
+
+   !> Count the points without a result by their status
+   subroutine count_failures(sweep, summary, failures)
+      type(sweep_t), intent(in) :: sweep
+      !> Outcomes of all points
+      type(summary_t), intent(in) :: summary
+      type(failures_t), intent(out) :: failures
+
+      integer :: first(size(without_result)), i
+
+      failures%inexact%count = count(summary%inexact)
+      failures%inexact%first = findloc(summary%inexact, .true., dim=1)
+      do i = 1, size(first)
+         first(i) = findloc(summary%status, without_result(i), dim=1)
+      end do
+      where (first == 0) first = huge(first)
+      do while (any(first < huge(first)))
+         i = minloc(first, dim=1)
+         failures%kinds = failures%kinds + 1
+         associate (kind => failures%kind(failures%kinds))
+            kind%status = without_result(i)
+            kind%first = first(i)
+            kind%count = count(summary%status == kind%status)
+            failures%count = failures%count + kind%count
+            call explain(sweep, kind)
+         end associate
+         first(i) = huge(first)
+      end do
+   end subroutine count_failures
+
+   !> Find the message of a point without a result
+   subroutine explain(sweep, kind)
+      type(sweep_t), intent(in) :: sweep
+      !> Its status and number; on return also the message
+      type(failure_t), intent(inout) :: kind
+
+      type(worker_t) :: worker
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: trouble
+
+      select case (kind%status)
+      case (contact_lasting)
+         kind%message = 'the bodies do not separate within solver.end_time'
+      case (contact_sticking)
+         kind%message = 'the sphere sticks: all motion dies out in contact'
+      case default
+         call solve_point(sweep, kind%first, worker, outcome, trouble)
+         kind%message = 'no result'
+         if (allocated(trouble)) kind%message = trouble%message
+      end select
+   end subroutine explain
 
    !> Wall-clock time
    function clock() result(time)
@@ -428,108 +434,5 @@ contains
       call system_clock(count, rate)
       time = real(count, wp)/real(rate, wp)
    end function clock
-
-   !> Count points for a reason. The result does not depend on the order of calls, as long as there
-   !> are no more than `most_reasons` reasons; the last one includes the rest
-   pure subroutine note(self, point, message, count)
-      class(failures_t), intent(inout) :: self
-      !> Index of the first of the points
-      integer, intent(in) :: point
-      !> Why they have no result; messages that differ only in numbers are one reason. Empty: they
-      !> have a result with an estimated error above the requested accuracy
-      character(len=*), intent(in) :: message
-      !> Number of points; absent: 1
-      integer, intent(in), optional :: count
-
-      integer :: i, n
-
-      n = 1
-      if (present(count)) n = count
-      if (message == '') then
-         call add(self%inexact)
-         return
-      end if
-      self%count = self%count + n
-      do i = 1, self%reasons
-         if (words_of(trim(self%reason(i)%message)) == words_of(message)) exit
-      end do
-      i = min(i, most_reasons)
-      self%reasons = max(self%reasons, i)
-      call add(self%reason(i))
-
-   contains
-
-      !> Add the points to a reason
-      pure subroutine add(reason)
-         type(failure_t), intent(inout) :: reason
-
-         reason%count = reason%count + n
-         if (point > reason%first) return
-         reason%first = point
-         reason%message = message
-      end subroutine add
-   end subroutine note
-
-   !> All reasons as numbers, which ranks can send
-   pure function pack_reasons(self) result(numbers)
-      class(failures_t), intent(in) :: self
-      !> Numbers, shape (n)
-      real(wp), allocatable :: numbers(:)
-
-      numbers = transfer([self%inexact, self%reason(:self%reasons)], [1.0_wp])
-   end function pack_reasons
-
-   !> Add reasons from numbers
-   pure subroutine add_packed(self, numbers)
-      class(failures_t), intent(inout) :: self
-      !> Numbers from any number of calls of `pack`, shape (n)
-      real(wp), intent(in) :: numbers(:)
-
-      type(failure_t), allocatable :: others(:)
-      integer :: i
-
-      allocate (others, source=transfer(numbers, [failure_t ::]))
-      do i = 1, size(others)
-         if (others(i)%count > 0) &
-            call self%note(others(i)%first, trim(others(i)%message), others(i)%count)
-      end do
-   end subroutine add_packed
-
-   !> Sort the reasons by their first point
-   pure subroutine sort(self)
-      class(failures_t), intent(inout) :: self
-
-      type(failure_t) :: other
-      integer :: i, j
-
-      do i = 2, self%reasons
-         do j = i, 2, -1
-            if (self%reason(j - 1)%first < self%reason(j)%first) exit
-            other = self%reason(j)
-            self%reason(j) = self%reason(j - 1)
-            self%reason(j - 1) = other
-         end do
-      end do
-   end subroutine sort
-
-   !> A message without its numbers
-   pure function words_of(message) result(words)
-      character(len=*), intent(in) :: message
-      !> The text without the characters of numbers
-      character(len=:), allocatable :: words
-
-      character(len=*), parameter :: numeric = '0123456789+-.eE'
-      character(len=len(message)) :: buffer
-      integer :: i, n
-
-      n = 0
-      buffer = ''
-      do i = 1, len(message)
-         if (index(numeric, message(i:i)) > 0) cycle
-         n = n + 1
-         buffer(n:n) = message(i:i)
-      end do
-      words = buffer(:n)
-   end function words_of
 
 end module vcor_sweep_points

@@ -9,12 +9,11 @@ module vcor_sweep_quantity
       contact_separated, contact_sticking, contact_unknown
    use vcor_impact_validity, only : level_none, levels, thresholds
    use vcor_kinds, only : wp
-   use vcor_sweep_part, only : part_t
    use vcor_text, only : integer_text
    implicit none
    private
 
-   public :: quantity_t, quantities, history_quantities, values_of
+   public :: quantity_t, quantities, history_quantities, values_of, row_of
    public :: quantity_value, quantity_names, quantity_place, labels_of, label_length
    public :: summary_t, values_t, new_summary
    public :: status_t, statuses, status_name, point_pending, point_invalid, point_failed
@@ -108,8 +107,10 @@ module vcor_sweep_quantity
       type(values_t), allocatable :: values(:)
       !> Status, one of the `contact_*` and `point_*` constants, shape (points)
       integer, allocatable :: status(:)
+      !> Whether the estimated error is above the accuracy requested, shape (points)
+      logical, allocatable :: inexact(:)
    contains
-      procedure :: put, put_part
+      procedure :: put, row
    end type summary_t
 
    !> Columns of a history, in the order of the rows of the state of a trajectory
@@ -379,50 +380,58 @@ contains
          end if
       end do
       allocate (self%status(points), source=point_pending)
+      allocate (self%inexact(points), source=.false.)
    end subroutine new_summary
 
+   !> The outcome of a point as numbers, which ranks send and a restart file keeps
+   pure function row_of(outcome) result(row)
+      type(outcome_t), intent(in) :: outcome
+      !> Values of the columns, then 1 if its estimated error is above the accuracy requested, or 0
+      real(wp), allocatable :: row(:)
+
+      row = [values_of(outcome), merge(1.0_wp, 0.0_wp, outcome%misses())]
+   end function row_of
+
    !> Store the outcome of a point
-   pure subroutine put(self, place, values)
+   pure subroutine put(self, place, row)
       class(summary_t), intent(inout) :: self
       integer, intent(in) :: place
-      !> Values of the outcome from `values_of`
-      real(wp), intent(in) :: values(:)
+      !> Its numbers from `row_of`
+      real(wp), intent(in) :: row(:)
 
-      integer :: i
+      integer :: i, n
 
-      do i = 1, size(self%values)
+      n = size(self%values)
+      do i = 1, n
          if (allocated(self%values(i)%integers)) then
-            self%values(i)%integers(place) = nint(values(i))
+            self%values(i)%integers(place) = nint(row(i))
          else
-            self%values(i)%reals(place) = values(i)
+            self%values(i)%reals(place) = row(i)
          end if
       end do
-      self%status(place) = nint(values(size(values)))
+      self%status(place) = nint(row(n + 1))
+      self%inexact(place) = row(n + 2) > 0.5_wp
    end subroutine put
 
-   !> Store the outcomes of a part
-   pure subroutine put_part(self, part, outcomes)
-      class(summary_t), intent(inout) :: self
-      type(part_t), intent(in) :: part
-      !> Outcomes of its points
-      type(summary_t), intent(in) :: outcomes
+   !> The outcome of a point as `put` has stored it
+   pure function row(self, place)
+      class(summary_t), intent(in) :: self
+      integer, intent(in) :: place
+      !> Its numbers as from `row_of`
+      real(wp) :: row(size(self%values) + 2)
 
-      integer :: i, j
+      integer :: i, n
 
-      do i = 1, size(self%values)
-         associate (all_values => self%values(i), values => outcomes%values(i))
-            do j = 1, part%count()
-               if (allocated(values%reals)) then
-                  all_values%reals(part%point(j)) = values%reals(j)
-               else
-                  all_values%integers(part%point(j)) = values%integers(j)
-               end if
-            end do
-         end associate
+      n = size(self%values)
+      do i = 1, n
+         if (allocated(self%values(i)%integers)) then
+            row(i) = real(self%values(i)%integers(place), wp)
+         else
+            row(i) = self%values(i)%reals(place)
+         end if
       end do
-      do j = 1, part%count()
-         self%status(part%point(j)) = outcomes%status(j)
-      end do
-   end subroutine put_part
+      row(n + 1) = real(self%status(place), wp)
+      row(n + 2) = merge(1.0_wp, 0.0_wp, self%inexact(place))
+   end function row
 
 end module vcor_sweep_quantity
