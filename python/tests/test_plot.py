@@ -99,6 +99,26 @@ def test_a_loop(results):
     assert y[-1] == pytest.approx(0.0, abs=1.0)
 
 
+def test_a_coupled_contact(results, tmp_path):
+    """Its indentation is the path of the sphere; there is no loss of the contact alone."""
+    subprocess.run(
+        [os.environ["VCOR"], "run", PAPER / "sls.nml", "--set", "plate.waves=body", "--quiet"],
+        cwd=tmp_path, check=True, timeout=None,
+    )  # fmt: skip
+    path = tmp_path / "sls.h5"
+    result = vcor.open(path)
+    velocity = curves(figure([path]).axes[0])[1].get_ydata()
+    assert velocity[0] == pytest.approx(-1.0)
+    assert velocity[-1] == pytest.approx(float(result.cor), abs=1e-6)
+    made = figure([path], kind="loop")
+    (line,) = curves(made.axes[0])
+    x, y = 1e-3 * line.get_xdata(), line.get_ydata()
+    lost = float(result.energy_loss)
+    # the trapezoidal rule over 80 steps
+    assert np.diff(x) @ (y[1:] + y[:-1]) / 2 == pytest.approx(lost, rel=5e-3)
+    assert texts(made) == [f"energy loss {1e3 * lost:.4g} mJ"]
+
+
 def test_moduli(results):
     made = figure([results / "sls_material.h5"])
     relaxation, moduli, tangent = made.axes

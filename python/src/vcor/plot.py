@@ -223,6 +223,9 @@ def _courses(results: list[Result]) -> list[dict[str, Any]]:
         time, end = history.time.values, result.number("contact_time")
         course: dict[str, Any] = {name: history[name].values for name in names}
         course |= {"end": end, "contact": slice(None), "ghost": slice(0, 0)}
+        if np.isnan(course["relative_velocity"]).all() and "sphere_velocity" in history:
+            # coupled contact: the indentation is the path of the sphere
+            course["relative_velocity"] = history["sphere_velocity"].values
         if not (course["relative_velocity"].max() > 0 and course["force"].max() > 0):
             raise InputError(f"{result.path}: the history in this file is not that of an impact")
         if np.isfinite(end) and end < time[-1] * (1 - 1e-9):
@@ -293,6 +296,9 @@ def _loop(wishes: _Wishes) -> Figure:
     made, (axis,) = _new(wishes, 1, 1)
     for i, (result, course) in enumerate(zip(wishes.results, courses, strict=True)):
         lost = result.number("hysteresis_energy")
+        if np.isnan(lost):
+            # coupled contact: the indentation is the path of the sphere
+            lost = result.number("energy_loss")
         # three times the stated error of cor, as an energy
         error = np.nan_to_num(6.0 * result.number("initial_energy") * result.number("cor_error"))
         factor, unit = _scale("J", max(lost, error))
