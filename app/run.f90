@@ -135,7 +135,8 @@ contains
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
       if (outcome%is_coupled()) call add('contact and waves are solved as one: cor is ' &
-         //'cor_sphere, and hysteresis_energy, wave_energy, deflection_ratio and inelasticity are nan')
+         //'cor_sphere, and hysteresis_energy, wave_energy, deflection_ratio and inelasticity ' &
+         //'are nan')
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it, and it will strike again')
       if (uncovered(job, outcome) /= '') call add(uncovered(job, outcome))
@@ -191,19 +192,26 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: time, too_light, reason
+      real(wp) :: last, end_time
       logical :: was_short
 
       if (any(outcome%status == [contact_separated, contact_resting])) return
-      associate (impact => job%sweep%problem%impact, &
-                 last => trajectory%state(1, trajectory%last))
-         time = short(last)
+      ! a solver may go on until the end of the contact
+      last = trajectory%state(1, trajectory%last)
+      if (job%case%given('solver', 'end_time')) then
+         call job%case%get('solver', 'end_time', end_time)
+         last = min(last, end_time)
+      end if
+      time = short(last)
+      associate (impact => job%sweep%problem%impact)
          too_light = trim(light_plate(impact))
          ! an end of the user's that is early says nothing yet
          was_short = job%case%given('solver', 'end_time') &
             .and. last < impact%patience(impact%time_scale())
       end associate
       if (outcome%status == contact_lasting) then
-         reason = 'give a longer solver.end_time; with method direct a contact shorter than its ' &
+         reason = 'give a longer solver.end_time'
+         if (job%method == 'direct') reason = reason//'; a contact shorter than the ' &
             //'steps is missed, give a shorter solver.time_step'
          if (too_light /= '' .and. .not. was_short) reason = too_light
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
