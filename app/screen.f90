@@ -89,8 +89,26 @@ contains
          if (name == 'cor_sphere') remark = '+- '//short(found%cor_sphere_error)//' numerical'
          if (name == 'cor_sphere' .and. found%cor_sphere > 0.0_wp) &
             remark = remark//'; a drop test reads this'
+         if (name == 'contact_time') remark = rough_error(found%contact_time, &
+            found%contact_time_error)
+         if (name == 'max_force') remark = rough_error(found%max_force, found%max_force_error)
       end function remark
    end function report
+
+   !> Remark on a number that is less accurate than a reader expects
+   pure function rough_error(value, error) result(text)
+      real(wp), intent(in) :: value
+      !> Its estimated error, NaN if there is none
+      real(wp), intent(in) :: error
+      character(len=:), allocatable :: text
+
+      ! relative error from which it is stated
+      real(wp), parameter :: rough = 2.0e-3_wp
+
+      text = ''
+      if (.not. ieee_is_finite(error)) return
+      if (error > rough*value) text = '+- '//short(error)//' numerical'
+   end function rough_error
 
    !> Program, case and title, and an empty line
    pure function heading(filename, title) result(text)

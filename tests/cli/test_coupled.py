@@ -174,3 +174,23 @@ def test_verify_compares_two_meshes(vcor):
     assert len(set(steps)) == 2
     digits = [line.split()[-1] for line in lines if "max_indentation " in line]
     assert len(digits) == 1 and 3 <= int(digits[0]) <= 8
+
+
+def test_a_force_without_a_largest_value(vcor):
+    """A blunt profile meets an infinite force on an incompressible plate: the screen says so."""
+    blunt = text("prony", "power", "sliding", 0.5, "body", "accuracy = 1e-4")
+    vcor.write(blunt)
+    (force,) = (
+        x for x in vcor.succeeds("run", "case.nml").splitlines() if "F_max" in x
+    )
+    assert "+-" in force
+    vcor.write(blunt.replace("poisson_ratio = 0.5", "poisson_ratio = 0.3"))
+    (force,) = (
+        x for x in vcor.succeeds("run", "case.nml").splitlines() if "F_max" in x
+    )
+    assert "+-" not in force
+    vcor.write(
+        text("prony", "punch", "half_space", 0.5, "body").replace("&contact  /", "")
+    )
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and done.out == "nan\n"
