@@ -104,8 +104,9 @@ module vcor_app_commands
       entry_t("", "With cases: solves each case by internal variables (ive), at its accuracy and " &
       //"at one hundredth of it, and by product integration (direct) with 1000, 2000 and 4000 " &
       //"steps per contact, extrapolated; with waves 'body' by the coupled contact, at its " &
-      //"accuracy and at a tenth of it. If the case asks for another scheme, that solution is " &
-      //"shown too. A second table has the numbers of every plate model, both contact laws and, " &
+      //"accuracy and at a tenth of it, or at half of the error that the first states if that " &
+      //"is less. If the case asks for another scheme, that solution is shown too. A second " &
+      //"table has the numbers of every plate model, both contact laws and, " &
       //"if it matters, both pairs. No files are written. The columns are:"), &
       entry_t("states", "error of cor that the solution itself estimates"), &
       entry_t("off by", "distance from the best cor; honest if at most three times the estimate"), &
