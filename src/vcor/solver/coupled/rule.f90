@@ -50,7 +50,7 @@ contains
    pure function weights(steps) result(matrix)
       !> Number of steps, a multiple of 4
       integer, intent(in) :: steps
-      !> Rows: real and imaginary parts at the nodes in turn; columns: W_0, W_1, ...; shape
+      !> In rows real and imaginary parts at the nodes in turn, in columns W_0, W_1, ...; shape
       !> (2 (steps/2 + 1), 0:steps-1)
       real(wp) :: matrix(2*(steps/2 + 1), 0:steps - 1)
 
