@@ -146,7 +146,7 @@ def processes(parent):
 def begin_and_wait(vcor, ranks, *words):
     process = start(vcor, "-n", ranks, program(), "run", "case.nml", "--output", "out", *words)
     part = vcor.folder / "out" / PART
-    while not part.exists():
+    while not part.exists() or done_in(part) == 0:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     return process
