@@ -197,7 +197,7 @@ def test_a_data_file_is_found_from_elsewhere(tmp_path, monkeypatch):
     """From a copy, a pickle and a saved case, in another folder or process than at first."""
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
-    (tmp_path / "a" / "points.csv").write_text("1e-6 2e6\n1e-3 1e6\n")
+    (tmp_path / "a" / "points.csv").write_text("time [s],relaxation_modulus [Pa]\n1e-6,2e6\n1e-3,1e6\n")
     material = "&material name = 'x', model = 'table', poisson_ratio = 0.4, file = 'points.csv' /\n"
     rest = "&impact velocity = 1 /\n&sphere radius = 0.01, mass = 0.01, material = 'x' /\n"
     (tmp_path / "a" / "c.nml").write_text(
@@ -229,7 +229,7 @@ def test_points_give_what_the_case_lacks(sls):
 
 def test_files_of_materials_complete_a_case(tmp_path):
     (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "points.csv").write_text("1e-6 2e6\n1e-3 1e6\n")
+    (tmp_path / "a" / "points.csv").write_text("time [s],relaxation_modulus [Pa]\n1e-6,2e6\n1e-3,1e6\n")
     material = "&material name = 'x', model = 'table', poisson_ratio = 0.4, file = 'points.csv' /\n"
     (tmp_path / "a" / "x.nml").write_text(material)
     rest = "&impact velocity = 1 /\n&sphere radius = 0.01, mass = 0.01, material = 'x' /\n"
@@ -605,7 +605,7 @@ def test_data_files_of_any_folder(tmp_path, monkeypatch, folder):
     place = tmp_path / folder.replace("/", "!")
     place.mkdir()
     for name in ("x.csv", "it's.csv"):
-        (place / name).write_text("t,E\n1e-6,1e7\n1e-3,5e6\n1,1e6\n")
+        (place / name).write_text("time [s],relaxation_modulus [Pa]\n1e-6,1e7\n1e-3,5e6\n1,1e6\n")
     bodies = "&impact velocity=1.0 /\n&sphere radius=0.01, material='s' /\n&plate material='r', " \
              "waves='none' /\n&material name='s', model='rigid', density=7800. /\n"  # fmt: skip
     (tmp_path / "base.nml").write_text(bodies)

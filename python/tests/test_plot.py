@@ -116,7 +116,7 @@ def test_a_coupled_contact(results, tmp_path):
     lost = float(result.energy_loss)
     # the trapezoidal rule over 80 steps
     assert np.diff(x) @ (y[1:] + y[:-1]) / 2 == pytest.approx(lost, rel=5e-3)
-    assert texts(made) == [f"energy loss {1e3 * lost:.4g} mJ"]
+    assert texts(made) == [f"energy loss {lost:.4g} J"]
 
 
 def test_moduli(results):
