@@ -226,7 +226,7 @@ contains
       unit = ''
       mark = index(cell, '[')
       if (mark == 0 .and. index(cell, ' (') > 0) mark = index(cell, ' (') + 1
-      if (mark > 0 .and. scan(cell(len(cell):), '])') > 0) then
+      if (mark > 0 .and. scan(cell(max(1, len(cell)):), '])') > 0) then
          unit = adjustl(cell(mark + 1:len(cell) - 1))
       else
          mark = len(cell) + 1
