@@ -162,8 +162,8 @@ contains
                words = "Hertz' force is about "//percent(0.1_wp*value**2) &
                   //" too high; compare shape = 'true_sphere', or take a slower impact"
             case ('thickness_ratio')
-               words = "thin for this contact: a free plate is softer, compare waves = 'body'; on " &
-                  //'a floor give plate.base'
+               words = "thin for this contact: a free plate is softer, compare waves = 'body'; " &
+                  //'on a floor give plate.base'
             case ('plate_wave_number')
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"

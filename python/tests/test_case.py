@@ -197,7 +197,9 @@ def test_a_data_file_is_found_from_elsewhere(tmp_path, monkeypatch):
     """From a copy, a pickle and a saved case, in another folder or process than at first."""
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
-    (tmp_path / "a" / "points.csv").write_text("time [s],relaxation_modulus [Pa]\n1e-6,2e6\n1e-3,1e6\n")
+    (tmp_path / "a" / "points.csv").write_text(
+        "time [s],relaxation_modulus [Pa]\n1e-6,2e6\n1e-3,1e6\n"
+    )
     material = "&material name = 'x', model = 'table', poisson_ratio = 0.4, file = 'points.csv' /\n"
     rest = "&impact velocity = 1 /\n&sphere radius = 0.01, mass = 0.01, material = 'x' /\n"
     (tmp_path / "a" / "c.nml").write_text(
@@ -229,7 +231,9 @@ def test_points_give_what_the_case_lacks(sls):
 
 def test_files_of_materials_complete_a_case(tmp_path):
     (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "points.csv").write_text("time [s],relaxation_modulus [Pa]\n1e-6,2e6\n1e-3,1e6\n")
+    (tmp_path / "a" / "points.csv").write_text(
+        "time [s],relaxation_modulus [Pa]\n1e-6,2e6\n1e-3,1e6\n"
+    )
     material = "&material name = 'x', model = 'table', poisson_ratio = 0.4, file = 'points.csv' /\n"
     (tmp_path / "a" / "x.nml").write_text(material)
     rest = "&impact velocity = 1 /\n&sphere radius = 0.01, mass = 0.01, material = 'x' /\n"

@@ -367,7 +367,8 @@ contains
       if (.not. allocated(trouble)) then
          call c_f_pointer(array_at(value_table, min(m, n)), values, [m, n])
          call c_f_pointer(array_at(result_table, min(k, n)), results, [k, n])
-         call solve_table(handle, addresses, values, columns, int(threads), results, remark, trouble)
+         call solve_table(handle, addresses, values, columns, int(threads), results, remark, &
+            trouble)
       end if
       code = report_error(trouble, error)
       if (allocated(remark)) call put_error(error, code, remark)
@@ -441,8 +442,8 @@ contains
       if (failures%count == 0) return
 !$omp critical (vcor_c_api)
       if (size(addresses) == 0) then
-         call raise(error, merge(error_input, error_numerical, summary%status(1) == point_invalid), &
-            handle%case%source//': '//failures%kind(1)%message)
+         call raise(error, &
+            merge(error_input, error_numerical, summary%status(1) == point_invalid), handle%case%source//': '//failures%kind(1)%message)
       else
          remark = integer_text(failures%count)//' of '//integer_text(n) &
             //' points have no result, the first is point ' &
@@ -466,8 +467,8 @@ contains
          call raise(error, error_usage, 'found several points without an address, expected one')
       else if (threads < 0 .or. threads > most_threads) then
 !$omp critical (vcor_c_api)
-         call raise(error, error_usage, 'found '//integer_text(threads)//' threads, expected 1 to ' &
-            //integer_text(most_threads)//', or 0 for as many as there are cores')
+         call raise(error, error_usage, 'found '//integer_text(threads) &
+            //' threads, expected 1 to '//integer_text(most_threads)//', or 0 for as many as there are cores')
 !$omp end critical (vcor_c_api)
       end if
    end subroutine check_counts

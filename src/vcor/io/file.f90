@@ -2,8 +2,8 @@
 !>
 !> A file is written under a temporary name, NAME.tmp, beside its final place. It is created
 !> exclusively, written, written through to the disk and renamed, with the permissions that the
-!> umask leaves; every status is checked. So the final name has the old file or the new one, whenever
-!> the process, the disk or the power fails.
+!> umask leaves; every status is checked. So the final name has the old file or the new one,
+!> whenever the process, the disk or the power fails.
 !>
 !>  - On failure the temporary file is removed. A killed process leaves it behind, and no other run
 !>    writes that file until it is deleted, by hand or by `--resume`: it may be of a run at work.
