@@ -443,7 +443,8 @@ contains
 !$omp critical (vcor_c_api)
       if (size(addresses) == 0) then
          call raise(error, &
-            merge(error_input, error_numerical, summary%status(1) == point_invalid), handle%case%source//': '//failures%kind(1)%message)
+            merge(error_input, error_numerical, summary%status(1) == point_invalid), &
+            handle%case%source//': '//failures%kind(1)%message)
       else
          remark = integer_text(failures%count)//' of '//integer_text(n) &
             //' points have no result, the first is point ' &
@@ -468,7 +469,8 @@ contains
       else if (threads < 0 .or. threads > most_threads) then
 !$omp critical (vcor_c_api)
          call raise(error, error_usage, 'found '//integer_text(threads) &
-            //' threads, expected 1 to '//integer_text(most_threads)//', or 0 for as many as there are cores')
+            //' threads, expected 1 to '//integer_text(most_threads) &
+            //', or 0 for as many as there are cores')
 !$omp end critical (vcor_c_api)
       end if
    end subroutine check_counts

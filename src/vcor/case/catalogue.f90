@@ -175,9 +175,11 @@ module vcor_case_catalogue
          "File of times and moduli; relative to the folder of the case", models="table", &
          required=.true.), &
       key_t("material", "time_unit", text_key, &
-         "Unit of the times of a file that does not name it", choices="ns us ms s min h", models="table"), &
+         "Unit of the times of a file that does not name it", &
+         choices="ns us ms s min h", models="table"), &
       key_t("material", "modulus_unit", text_key, &
-         "Unit of the moduli of a file that does not name it", choices="Pa kPa MPa GPa", models="table"), &
+         "Unit of the moduli of a file that does not name it", &
+         choices="Pa kPa MPa GPa", models="table"), &
       key_t("material", "modulus_kind", text_key, &
          "Whether the moduli are E, or G = E/(2 (1 + nu))", &
          choices="tensile shear", models="elastic "//relaxing_models, default="tensile"), &
