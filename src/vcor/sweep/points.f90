@@ -8,9 +8,9 @@
 !>
 !> The work is done in rounds. In a round the next points are dealt to the ranks, the threads of
 !> each rank solve its share, the first rank gathers the outcomes, and all ranks agree on the length
-!> of the next round and whether there is one. Outcomes are stored by the place of their point,
-!> so they are bitwise the same for any number of ranks and threads. Points without a result are counted by
-!> their status; the message of the first one of each is found by solving it once more.
+!> of the next round and whether there is one. Outcomes are stored by the place of their point, so
+!> they are bitwise the same for any number of ranks and threads. Points without a result are
+!> counted by their status; the message of the first one of each is found by solving it once more.
 !>
 !> Procedures that threads call have no static storage. gfortran 12 keeps the length of a function
 !> result of deferred length there: such a function is called before the threads begin, or by one
