@@ -331,11 +331,12 @@ contains
       if (value >= thresholds(measure)%outside) level = level_outside
    end function level_of
 
-   !> Resistance of an elastic half space to a point force on its surface: the imaginary part of
-   !> Lamb's compliance u/F is -omega I(nu)/(2 pi mu c_s). With a = c_s/c_p, p^2 = x^2 - a^2,
-   !> q^2 = x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q
+   !> Resistance of an elastic half space to a point force F exp(i omega t) on its surface. With
+   !> a = c_s/c_p, p^2 = x^2 - a^2, q^2 = x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q the surface
+   !> moves by -F c_s p/(mu omega R) at the wave number x omega/c_s, so the imaginary part of Lamb's
+   !> compliance u/F is -omega I(nu)/(2 pi mu c_s) with
    !>
-   !>     I = -Im int_0^inf x p/R dx
+   !>     I = Im int_0^inf x p/R dx,      p = i|p| for x < a, q = i|q| for x < 1
    !>
    !> consists of pressure and shear waves in x < a, shear waves in a < x < 1 and Rayleigh waves at
    !> the root of R: G. F. Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521,
