@@ -1,4 +1,4 @@
-"""The scripts of docs/python.md and docs/distributed.md do what they say."""
+"""The scripts of the pages do what they say."""
 
 import re
 import shutil
@@ -8,7 +8,7 @@ import sys
 import pytest
 from conftest import ROOT
 
-PAGES = ["python.md", "distributed.md", "exchange.md"]
+PAGES = ["python.md", "distributed.md", "exchange.md", "recipes.md"]
 SCRIPTS = {
     f"{name}-{i}": script
     for name in PAGES
@@ -22,7 +22,11 @@ SCRIPTS = {
 FEWER = ("POINTS, PART = 10_000_000, 100_000", "POINTS, PART = 400, 100")
 
 
-@pytest.mark.parametrize("script", SCRIPTS.values(), ids=SCRIPTS)
+# That of the recipe has a test of its own
+WITHOUT = {name: script for name, script in SCRIPTS.items() if name != "recipes.md-0"}
+
+
+@pytest.mark.parametrize("script", WITHOUT.values(), ids=WITHOUT)
 def test_a_script_of_the_pages(script, tmp_path):
     assert ("10_000_000" in script) == (FEWER[0] in script)
     script = script.replace(*FEWER)
@@ -41,3 +45,21 @@ def test_a_script_of_the_pages(script, tmp_path):
         assert done.stdout.startswith("400 impacts, cor 0.43")
     else:
         assert done.stdout and not done.stderr
+
+
+def test_the_pair_of_the_recipe(tmp_path):
+    """The line that the page shows, to the digits that a fit keeps."""
+    page = (ROOT / "docs/recipes.md").read_text("utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPTS["recipes.md-0"]],
+        cwd=tmp_path,
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+    )
+    (shown,) = re.findall("^pair_coeff .*$", page, re.M)
+    for word, other in zip(shown.split(), done.stdout.split(), strict=True):
+        if re.match(r"\d.*\d$", word):
+            assert float(other) == pytest.approx(float(word), rel=1e-5)
+        else:
+            assert other == word

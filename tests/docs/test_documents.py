@@ -135,9 +135,13 @@ def shell(folder, text, page=""):
     return done.stdout
 
 
+# Pages whose commands have a test of their own
+WALKED = ["gallery.md", "dma_to_restitution.md", "recipes.md", "which_model.md"]
+
+
 def commands(page):
-    """The blocks of commands of a page; those of the gallery are run with its figures."""
-    if page.name == "gallery.md":
+    """The blocks of commands of a page."""
+    if page.name in WALKED:
         return []
     found = blocks(page.relative_to(ROOT), "sh")
     return [block for block in found if "vcor " in block and not OTHER.search(block)]
@@ -152,6 +156,23 @@ def test_commands(folder, page):
     """One after the other, as a reader types them."""
     for block in commands(page):
         shell(folder, block, text_of(page.relative_to(ROOT)))
+
+
+def rounded(value, shown):
+    """A number as the page shows it; a word as it is."""
+    if not re.match(r"-?\d", shown):
+        return value
+    mantissa, _, power = shown.partition("E")
+    return f"{float(value):.{len(mantissa.partition('.')[2])}{'E' if power else 'f'}}"
+
+
+@pytest.mark.parametrize("name", ["docs/recipes.md", "docs/which_model.md"])
+def test_the_numbers_after_commands(folder, name):
+    """A block ends with what stands after its `#`, to the digits that are shown."""
+    for block in blocks(name, "sh"):
+        shown = ", ".join(re.findall(r" {5}# (.*)$", block, re.MULTILINE)).split(", ")
+        found = shell(folder, block, text_of(name)).split()[-len(shown) :]
+        assert [rounded(*pair) for pair in zip(found, shown, strict=True)] == shown, block
 
 
 def test_the_walk_from_dma_to_restitution(folder):
