@@ -78,7 +78,7 @@ contains
             if (request%command == 'verify' .and. job%sweep%is_grid()) call job%case%refuse( &
                'sweep', 'parameter', 1, 'verify takes single impacts, found a &sweep group', error)
             if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
-            job%method = method_of(job%case)
+            job%method = trim(method_of(job%case))
             if (.not. allocated(error)) call name_files(request, job%case, job%sweep%grid, &
                size(jobs) == 1, job%files, error)
          end associate

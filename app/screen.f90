@@ -47,7 +47,7 @@ contains
       text = heading(filename, title)
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are in contact still at '//short(time)//' s ('//method//', ' &
-            //integer_text(outcome%steps)//' steps), status '//status_name(outcome%status)//nl
+            //integer_text(outcome%steps)//' steps), status '//trim(status_name(outcome%status))//nl
       else
          do i = 1, size(shown)
             if (ieee_is_nan(quantity_value(outcome, shown(i)))) cycle

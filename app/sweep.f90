@@ -258,8 +258,9 @@ contains
          //' points without result:'//nl
       do i = 1, failures%kinds
          associate (kind => failures%kind(i))
-            text = text//'  '//right(integer_text(kind%count), 8)//'  '//status_name(kind%status) &
-               //', first at point '//integer_text(kind%first)//', ' &
+            text = text//'  '//right(integer_text(kind%count), 8)//'  ' &
+               //trim(status_name(kind%status))//', first at point ' &
+               //integer_text(kind%first)//', ' &
                //coordinates(job%sweep%grid, kind%first)//':'//nl &
                //'            '//kind%message//nl
          end associate

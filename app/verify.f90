@@ -69,7 +69,7 @@ contains
       type(model_t), allocatable :: models(:)
       character(len=:), allocatable :: title
 
-      call compare(job%case, job%sweep%problem%impact, comparison, error)
+      call compare(job%case, job%sweep%problem, comparison, error)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
          return
@@ -118,8 +118,8 @@ contains
          text = text//nl//values_text(comparison)
          if (comparison%has_direct) text = text//nl//differences_text(comparison)
       else if (.not. allocated(comparison%objection)) then
-         text = text//'  all end in the same way, '//status_name( &
-            comparison%attempts(attempt_first)%outcome%status) &
+         text = text//'  all end in the same way, '//trim(status_name( &
+            comparison%attempts(attempt_first)%outcome%status)) &
             //': there are no numbers to compare'//nl
       end if
       text = text//nl
@@ -252,7 +252,7 @@ contains
             end if
             text = text//right(integer_text(this%outcome%steps), 7)
             if (.not. comparison%separated) then
-               text = text//'   '//status_name(this%outcome%status)//nl
+               text = text//'   '//trim(status_name(this%outcome%status))//nl
                cycle
             end if
             honest = ''

@@ -419,6 +419,8 @@ BAD = {
     "control character": ("t [s],E [Pa]\n1,5\n2,\x004\n", [":3:", "control character"]),
     "empty": ("", ["no numbers"]),
     "blank": ("\n \n", ["no numbers"]),
+    "a column without numbers": ("t [s];x;E [MPa]\n1;9;\n2;6;\n", ["the columns 't [s]', 'x'"]),
+    "cut short": ("f,E_stor,E_loss\nHz,MPa,MPa\n0.1,24", ["no column of the loss modulus"]),
     "head only": ("t [s],E [Pa]\n", ["no numbers"]),
     "two of one name": ("f [Hz],E' [MPa],E'' [MPa],E' [MPa]\n1,2,1,3\n2,3,1,4\n",
                         ["two columns of storage modulus", "--columns", "storage_modulus=4"]),

@@ -58,6 +58,32 @@ def test_ctrl_c(sls, call):
     assert done.returncode == 0
 
 
+# A comparison of minutes, and calls in the meantime
+BESIDE = """
+import os, sys, threading, time
+import vcor
+
+case = vcor.read(sys.argv[1])
+long = case.copy()
+long["solver.method"], long["solver.time_step"] = "direct", 3e-9
+thread = threading.Thread(target=long.verify, daemon=True)
+thread.start()
+end = time.monotonic() + 0.5
+while time.monotonic() < end:
+    case["impact.velocity"] = 10.0
+print(case.solve(quantities=["status"])["status"], thread.is_alive(), flush=True)
+os._exit(0)
+"""
+
+
+def test_other_calls_do_not_wait_for_a_comparison(sls):
+    done = subprocess.run(
+        [sys.executable, "-c", BESIDE, sls.name],
+        capture_output=True, encoding="utf-8", timeout=400, check=False,
+    )  # fmt: skip
+    assert (done.stdout.split(), done.stderr) == (["separated", "True"], "")
+
+
 def test_the_first_part_is_one_point_a_thread(sls, monkeypatch):
     """Nobody knows how long a point takes before one is solved."""
     solve, lengths = vcor.Case._solve, []

@@ -16,7 +16,7 @@ module vcor_c_api
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : case_text, value_text
-   use vcor_case_problem, only : material_of_case
+   use vcor_case_problem, only : material_of_case, problem_t
    use vcor_case_unread, only : refuse_unread
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
@@ -604,6 +604,7 @@ contains
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
       type(case_t) :: case
+      type(problem_t) :: problem
       type(comparison_t) :: comparison
       type(c_ptr) :: none(0)
       real(wp) :: nothing(0, 1)
@@ -621,10 +622,11 @@ contains
       if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
       if (.not. allocated(trouble)) then
          case = handle%case
-         call read_data(case, trouble)
+         problem = handle%sweep%problem
       end if
+!$omp end critical (vcor_c_api)
       if (.not. allocated(trouble)) then
-         call compare(case, handle%sweep%problem%impact, comparison, trouble)
+         call compare(case, problem, comparison, trouble)
          if (allocated(trouble)) trouble%message = case%source//': '//trouble%message
       end if
       if (.not. allocated(trouble)) then
@@ -637,9 +639,8 @@ contains
             end associate
          end do
          if (allocated(comparison%objection)) call raise(trouble, error_numerical, &
-            handle%case%source//': '//comparison%objection)
+            case%source//': '//comparison%objection)
       end if
-!$omp end critical (vcor_c_api)
       code = report_error(trouble, error)
    end function vcor_verify
 

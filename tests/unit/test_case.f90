@@ -396,6 +396,12 @@ contains
       call check_error(error, error_input, &
          & "--set 'p.1 = x'.moduli: |3 moduli|as many rates as moduli", "contradiction by option")
 
+      call read_case_text(case, "&material name='''0''' / &material name='it''s' /", "x.nml", error)
+      call sets_number(case, "'0'.density=1", "material", "density", 1, 1.0_wp)
+      call sets_number(case, "'''0'''.density=2", "material", "density", 1, 2.0_wp)
+      call sets_number(case, "it's.density=3", "material", "density", 2, 3.0_wp)
+      call sets_number(case, "'it''s'.density=4", "material", "density", 2, 4.0_wp)
+
       call read_case_text(case, impact//sphere//plate//rubber, "x.nml", error)
       call sets_number(case, "material.beta=300", "material", "beta", 1, 300.0_wp)
       call override(case, "sphere.material=sls rubber", error, option="--set")

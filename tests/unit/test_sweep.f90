@@ -261,8 +261,8 @@ contains
 
    !> Names of statuses
    subroutine test_statuses()
-      call check_text(status_name(point_invalid), "invalid", "no impact")
-      call check_text(status_name(point_failed), "failed", "no solution")
+      call check_text(trim(status_name(point_invalid)), "invalid", "no impact")
+      call check_text(trim(status_name(point_failed)), "failed", "no solution")
    end subroutine test_statuses
 
 end program test_sweep

@@ -329,7 +329,7 @@ contains
       call success(error, "a case is read")
       call problem_of_case(problem, case, error)
       call success(error, "its impact is built")
-      call compare(case, problem%impact, comparison, error)
+      call compare(case, problem, comparison, error)
       call success(error, "it is compared")
    end subroutine compare_sls
 

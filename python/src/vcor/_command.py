@@ -14,8 +14,8 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
-from ._library import Error, FileError, UsageError, __version__
-from ._text import name_flaw, near, printable
+from ._library import Error, FileError, UsageError, __version__, printable
+from ._text import name_flaw, near
 
 FORMATS = ("svg", "pdf", "png")
 
@@ -49,7 +49,7 @@ class Parser(argparse.ArgumentParser):
             for text in [word] if isinstance(word, str) else word if isinstance(word, list) else []:
                 if printable(text) != text:
                     raise UsageError(
-                        f"found a control character in '{printable(text)}', expected a text that "
+                        f"found a control character in '{text}', expected a text that "
                         "can be read on one line"
                     )
         if (flaw := name_flaw(getattr(options, "output", None) or "")) != "":
@@ -80,7 +80,7 @@ def one_line() -> Iterator[None]:
             warnings.showwarning = _note  # type: ignore[assignment]
             yield
     except Error as error:
-        sys.stderr.write(f"vcor: error: {printable(str(error))}\n")
+        sys.stderr.write(f"vcor: error: {error}\n")
         sys.exit(error.code)
     except MemoryError:
         sys.stderr.write("vcor: error: the memory is too small for this\n")

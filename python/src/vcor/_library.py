@@ -23,12 +23,20 @@ Floats = NDArray[np.float64]
 MOST_SEED = 2**63 - 1
 
 
+def printable(text: str) -> str:
+    """A text on one line: `?` for each character that has no shape."""
+    return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
+
+
 class Error(Exception):
     """An error of vcor; its text is the line of the program, `code` the program's exit code."""
 
     code = 1
     #: What there is of a result: the summary of an impact that does not separate, else None
     result: Any = None
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(printable(message))
 
 
 class InputError(Error, ValueError):

@@ -19,11 +19,6 @@ def near(word: str, known: Iterable[str]) -> str:
     return f"; did you mean '{found[0]}'?" if found else ""
 
 
-def printable(text: str) -> str:
-    """A text on one line: `?` for each character that has no shape."""
-    return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
-
-
 def read_text(path: str | os.PathLike[str], errors: str = "replace") -> str:
     """Text of a file, without a byte order mark."""
     if not os.fspath(path):

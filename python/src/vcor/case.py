@@ -32,7 +32,7 @@ from ._library import (
     numbers,
     whole,
 )
-from ._text import printable, write
+from ._text import write
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -656,7 +656,7 @@ def _threads(given: int | None) -> int:
     name = "SLURM_CPUS_PER_TASK"
     word = os.environ.get(name, "").strip()
     if word and not word.isdecimal():
-        raise UsageError(f"{name}: found '{printable(word):.60}', expected a whole number from 1 "
+        raise UsageError(f"{name}: found '{word:.60}', expected a whole number from 1 "
                          f"to {_MOST_THREADS}")  # fmt: skip
     return whole(int(word), name, 1, _MOST_THREADS) if word else 0
 

@@ -32,8 +32,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from . import _command, _text
 from ._command import FORMATS
-from ._library import Floats, InputError, UsageError, numbers, whole
-from ._text import printable
+from ._library import Floats, InputError, UsageError, numbers, printable, whole
 from .case import listed
 from .materials.data import (
     Columns,

@@ -15,7 +15,6 @@ import h5py
 import xarray as xr
 
 from ._library import Error, FileError, InputError
-from ._text import printable
 
 #: How files of HDF5 begin
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -110,7 +109,7 @@ def _datasets(path: str) -> Iterator[h5py.Dataset]:
                 if isinstance(kind, h5py.ExternalLink) or not isinstance(
                     kind, (h5py.HardLink, h5py.SoftLink)
                 ):
-                    raise InputError(f"{path}: '{printable(name)}' is a link to another file, "
+                    raise InputError(f"{path}: '{name}' is a link to another file, "
                                      "expected results in one file")  # fmt: skip
                 if not isinstance(kind, h5py.HardLink):
                     continue
@@ -123,11 +122,11 @@ def _datasets(path: str) -> Iterator[h5py.Dataset]:
                     groups.append(found)
                 elif isinstance(found, h5py.Dataset):
                     if found.external or found.is_virtual:
-                        raise InputError(f"{path}: the data of '{printable(name)}' are in another "
+                        raise InputError(f"{path}: the data of '{name}' are in another "
                                          "file, expected results in one file")  # fmt: skip
                     if found.nbytes > size:
                         raise FileError(
-                            f"{path}: this file is damaged: '{printable(name)}' has {found.nbytes} "
+                            f"{path}: this file is damaged: '{name}' has {found.nbytes} "
                             "bytes, more than the file can hold"
                         )
                     yield found

@@ -12,8 +12,8 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-from ._library import Error, InputError, UsageError
-from ._text import near, printable, read_text
+from ._library import Error, InputError, UsageError, printable
+from ._text import near, read_text
 from .case import Case, number
 from .materials.data import is_temperature
 from .materials.units import ZERO_C

@@ -42,7 +42,8 @@ contains
       end if
       in_quotes = scan(owner(1:1), "'""") == 1 .and. len(owner) > 2
       if (in_quotes) in_quotes = owner(len(owner):) == owner(1:1)
-      if (in_quotes) owner = owner(2:len(owner) - 1)
+      ! a name may have quotes of its own
+      if (in_quotes .and. case%find_material(owner) == 0) owner = unquoted(owner)
 
       group = find_group(owner)
       item = case%find_material(owner)
@@ -78,6 +79,23 @@ contains
          call find_element(case, element, address, message)
       end if
    end subroutine resolve
+
+   !> A text without the quotes around it, of which a doubled one within stands for one
+   pure function unquoted(text) result(inner)
+      !> Text between two quotes of a kind
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: inner
+
+      integer :: i
+
+      inner = ''
+      i = 2
+      do while (i < len(text))
+         inner = inner//text(i:i)
+         if (text(i:i + 1) == repeat(text(1:1), 2) .and. i < len(text) - 1) i = i + 1
+         i = i + 1
+      end do
+   end function unquoted
 
    !> Change the address of a list to that of one of its numbers
    pure subroutine find_element(case, element, address, message)

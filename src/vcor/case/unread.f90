@@ -318,7 +318,7 @@ contains
    pure function method_of(case) result(name)
       type(case_t), intent(in) :: case
       !> ive, direct or coupled
-      character(len=:), allocatable :: name
+      character(len=7) :: name
 
       character(len=:), allocatable :: method, scheme
 

@@ -70,11 +70,11 @@ contains
       !> Whether the impact has waves in a plate of any thickness
       logical, intent(in) :: has_body
       !> ive, direct or coupled
-      character(len=:), allocatable :: name
+      character(len=7) :: name
 
       name = method
       if (method /= 'auto') return
-      name = trim(merge('ive   ', 'direct', scheme == 'product'))
+      name = merge('ive   ', 'direct', scheme == 'product')
       if (has_body) name = 'coupled'
    end function method_for
 

@@ -330,13 +330,13 @@ contains
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
       !> separated, no_separation, sticks, invalid, failed, rests or pending
-      character(len=:), allocatable :: name
+      character(len=13) :: name
 
       integer :: i
 
       name = 'failed'
       do i = 1, size(statuses)
-         if (statuses(i)%code == status) name = trim(statuses(i)%name)
+         if (statuses(i)%code == status) name = statuses(i)%name
       end do
    end function status_name
 

@@ -11,7 +11,7 @@ module vcor_verify_methods
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
       ieee_value
    use vcor_case_case, only : case_t
-   use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_problem, only : problem_t
    use vcor_case_unread, only : method_of
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
@@ -111,27 +111,28 @@ module vcor_verify_methods
 contains
 
    !> Solve a case by all methods and judge the results
-   subroutine compare(case, impact, comparison, error)
+   subroutine compare(case, problem, comparison, error)
       !> A validated case
       type(case_t), intent(in) :: case
-      type(impact_t), intent(in) :: impact
+      !> Its problem
+      type(problem_t), intent(in) :: problem
       type(comparison_t), intent(out) :: comparison
       !> An error that no method can avoid, but no numerical failure: those are part of the
       !> comparison. Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(solver_settings_t) :: settings
-      type(problem_t) :: problem
+      class(solver_t), allocatable :: solver
       character(len=:), allocatable :: method, scheme
 
       if (method_of(case) == 'coupled') then
-         call compare_coupled(case, impact, comparison, error)
+         call compare_coupled(case, problem%impact, comparison, error)
          return
       end if
       call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
       associate (first => comparison%attempts(attempt_first), &
-                 own => comparison%attempts(attempt_case))
+                 own => comparison%attempts(attempt_case), impact => problem%impact)
          settings = settings_of(case, 'ive')
          call make_attempt(first, settings, impact, error)
          if (allocated(error)) return
@@ -154,8 +155,8 @@ contains
             own%label = 'case: '//scheme
             if (case%given('solver', 'time_step')) &
                call case%get('solver', 'time_step', own%time_step)
-            call problem_of_case(problem, case, error)
-            if (.not. allocated(error)) call own%solve(problem%solver, problem%impact, error)
+            allocate (solver, source=problem%solver)
+            call own%solve(solver, impact, error)
             if (allocated(error)) return
          end if
       end associate
@@ -341,8 +342,8 @@ contains
             else if (.not. allocated(first%failure) .and. this%outcome%status &
                      /= first%outcome%status) then
                call add_objection(self, 'the methods do not agree on how the contact ends: ' &
-                  //status_name(first%outcome%status)//' by '//trim(first%label)//', ' &
-                  //status_name(this%outcome%status)//' by '//trim(this%label))
+                  //trim(status_name(first%outcome%status))//' by '//trim(first%label)//', ' &
+                  //trim(status_name(this%outcome%status))//' by '//trim(this%label))
             end if
          end associate
       end do

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from .._library import InputError, UsageError
-from .._text import printable
+from .._library import InputError, UsageError, printable
 from ..case import _written
 
 #: Gas constant [J/(mol K)]

@@ -354,7 +354,7 @@ def _finished(
 
 def _comment(line: str, ending: str) -> str:
     """A line of a comment that ends with it, whatever stands in it."""
-    line = COMMENTS.get(ending, "# ") + _text.printable(line).rstrip()
+    line = COMMENTS.get(ending, "# ") + _library.printable(line).rstrip()
     # a comment of XML has no --; elsewhere the next line would belong to this one
     line = re.sub("-(?=-)", "- ", line) if ending == ".xml" else line
     return line + "." if line.endswith(("\\", "??/", "&")) else line

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._library import Error, Floats, InputError, UsageError, numbers, whole, within
-from .._text import document, near, printable
+from .._library import Error, Floats, InputError, UsageError, numbers, printable, whole, within
+from .._text import document, near
 from ..case import Case, Material, _written, scalars
 from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
@@ -278,14 +278,14 @@ def check_fixed(model: str, fix: Mapping[str, float] | None) -> dict[str, float]
     if not isinstance(model, str):
         raise UsageError(f"model: found {model!r:.60}, expected a text")
     if model not in MODELS:
-        raise UsageError(f"unknown model '{printable(model)}', known: {', '.join(MODELS)}"
+        raise UsageError(f"unknown model '{model}', known: {', '.join(MODELS)}"
                          f"{near(model, MODELS)}")  # fmt: skip
     law = LAWS.get(model)
     known = [*law.units] if law else ["equilibrium_modulus"]
     vanishing = law.vanishing if law else "equilibrium_modulus"
     for key, value in fixed.items():
         if key not in known:
-            raise UsageError(f"--fix: found '{printable(key)}', expected a parameter of model "
+            raise UsageError(f"--fix: found '{key}', expected a parameter of model "
                              f"{model}: {', '.join(known)}{near(key, known)}")  # fmt: skip
         most = law.most_exponent if law and key == "exponent" else 1e30
         if not (1e-30 <= value <= most or key == vanishing and value == 0):

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from .. import _command
-from .._library import Error, FileError, InputError, UsageError, __version__
-from .._text import near, place, printable, write
+from .._library import Error, FileError, InputError, UsageError, __version__, printable
+from .._text import near, place, write
 from ..case import _written, number, read, with_material
 from .data import add_data_options, columns_option, read_data
 from .fit import (

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._library import Floats, InputError, UsageError
-from .._text import near, printable
+from .._library import Floats, InputError, UsageError, printable
+from .._text import near
 from .grid import Grid, Row, is_missing, is_number, number
 from .names import ASIDE, QUANTITIES, Head, is_address, plain
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
@@ -272,7 +272,7 @@ class Reader:
             elif is_missing(cell) and (kind in ("impacts", "record") or name in ("temperature",)):
                 found[i] = math.nan
             else:
-                what = ": no number" if not cell else f"'{printable(cell[:40])}'"
+                what = ": no number" if not cell else f"'{cell[:40]}'"
                 raise InputError(
                     f"{place}: found {what.removeprefix(': ')} in column "
                     f"'{column.head.text}', expected a number"
@@ -571,11 +571,12 @@ class Reader:
 
 
 def _known(table: Table) -> set[str]:
-    """Names of quantities that a table has, without those whose units belong to others."""
+    """Names of quantities that a table has numbers of, without those whose units are others'."""
     return {
         head.name
-        for head in table.heads
+        for i, head in enumerate(table.heads)
         if head.name
+        and not table.is_empty(i)
         and not head.flaw
         and not head.sigma
         and not (head.name == "velocity" and plain_unit(head.unit).startswith("rad/"))

@@ -42,6 +42,10 @@ class Table:
         """All rows."""
         return [row for _, rows in self.parts for row in rows]
 
+    def is_empty(self, index: int) -> bool:
+        """Whether a column has no value in any row."""
+        return all(len(row.cells) <= index or is_missing(row.cells[index]) for row in self.rows())
+
     def texts(self) -> list[str]:
         """Heads that say something."""
         return [head.text.strip() for head in self.heads if head.text.strip()]
@@ -359,7 +363,7 @@ def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
     """Columns that are wanted, once each, for each temperature in the heads."""
     by_key: dict[str, list[Column]] = {}
     for i, head in enumerate(table.heads):
-        if head.name and head.key in wanted and not all(map(is_missing, _column(table, i))):
+        if head.name and head.key in wanted and not table.is_empty(i):
             by_key.setdefault(head.key, []).append(Column(i, head))
     tags: list[float] = []
     for columns in by_key.values():
@@ -379,10 +383,6 @@ def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
                 found[key] = _one(table, path, key, own or common)
         groups.append((tag, found))
     return groups
-
-
-def _column(table: Table, index: int) -> list[str]:
-    return [row.cells[index] if index < len(row.cells) else "" for row in table.rows()]
 
 
 def _one(table: Table, path: str, key: str, columns: list[Column]) -> Column:
