@@ -51,7 +51,8 @@ def test_links(page):
     words = re.sub(r"`[^`\n]*`", "", plain(page))
     links = re.findall(r"\]\(([^)\s]+)\)", words) + re.findall(r'(?:src|href)="([^"]+)"', words)
     for link in links:
-        if "://" in link:
+        # the second leads to the pages of a repository on GitHub
+        if "://" in link or link.startswith("../../actions/"):
             continue
         path, _, anchor = link.partition("#")
         target = (page.parent / path).resolve() if path else page
@@ -59,13 +60,6 @@ def test_links(page):
         assert target.is_relative_to(ROOT), link
         if anchor:
             assert anchor in anchors(target), link
-
-
-def test_the_readme_has_the_index_of_the_manual():
-    rows = [line for line in text_of("docs/README.md").splitlines() if line.startswith("| ")]
-    assert len(rows) > 10
-    for row in rows:
-        assert re.sub(r"\]\((\w+\.md)\)", r"](docs/\1)", row) in text_of("README.md")
 
 
 def test_one_version():
@@ -136,7 +130,7 @@ def shell(folder, text, page=""):
 
 
 # Pages whose commands have a test of their own
-WALKED = ["gallery.md", "dma_to_restitution.md", "recipes.md", "which_model.md"]
+WALKED = ["README.md", "gallery.md", "dma_to_restitution.md", "recipes.md", "which_model.md"]
 
 
 def commands(page):
@@ -196,9 +190,24 @@ def test_the_loop_prints_what_the_page_shows(folder):
     assert shell(folder, loop) == shown
 
 
-def test_the_first_run_of_the_readme(folder):
-    """The numbers to all digits that are shown, or to their errors; steps and files are another matter."""
-    shown = next(b for b in text_of("README.md").split("```") if b.startswith("\nvcor "))
+def test_the_boxes_of_the_readme(folder):
+    """Those of the recipes, which are tested there, and a script of its own."""
+    recipes = text_of("docs/recipes.md")
+    *boxes, install = blocks("README.md", "sh")
+    first, last = blocks("README.md", "python")
+    assert len(boxes) == 2 and "scripts/run.sh" in install
+    for block in (*boxes, first):
+        assert block in recipes
+    (folder / "script.py").write_text(last)
+    assert shell(folder, f"{sys.executable} script.py").startswith("[")
+
+
+def test_the_first_run(folder):
+    """The numbers to all digits that are shown, or to their errors; steps and files are another matter.
+    The README has some lines of it."""
+    shown = next(b for b in text_of("docs/getting_started.md").split("```") if b.startswith("\nvcor "))
+    few = next(b for b in text_of("README.md").split("```") if b.startswith("\n  coefficient"))
+    assert set(few.strip("\n").splitlines()) <= set(shown.splitlines())
     found = shell(folder, "vcor run examples/paper/sls.nml")
 
     def rows(text):
@@ -214,10 +223,9 @@ def test_the_first_run_of_the_readme(folder):
             assert line == other
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/getting_started.md"])
-def test_the_case_of_the_page(folder, name):
+def test_the_case_of_the_page(folder):
     """The case that is shown is the example."""
-    (folder / "sls.nml").write_text(blocks(name, "fortran")[0])
+    (folder / "sls.nml").write_text(blocks("docs/getting_started.md", "fortran")[0])
     assert shell(folder, "vcor check sls.nml") == shell(folder, "vcor check examples/paper/sls.nml")
 
 

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Makes the site of the documents, build/site/html/index.html: the pages of docs with a search, the notebook
+# of the tutorial executed, the references of the Python package and of the Fortran library. Builds the
+# library (scripts/setup.sh has what that needs) and installs Sphinx in build/site_venv. Stops at the first
+# warning of Sphinx. Not a part of scripts/test.sh; .github/workflows/site.yml runs it.
+#
+#   scripts/site.sh
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+top=$PWD
+venv=$top/build/site_venv
+site=$top/build/site
+fail() { printf 'site: error: %s\n' "$*" >&2; exit 1; }
+
+[ $# -eq 0 ] || fail "unknown argument '$1', expected nothing"
+cmake --preset release >/dev/null
+cmake --build --preset release --target vcor_python >/dev/null
+
+made_of=$(python3 --version; cat docs/site/requirements.txt tests/requirements.txt)
+if [ "$made_of" != "$(cat "$venv/made_of" 2>/dev/null)" ]; then
+   python3 -m venv --clear "$venv"
+   "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-input -r docs/site/requirements.txt
+   printf '%s' "$made_of" >"$venv/made_of"
+fi
+
+# The pages as they are, beside links to the folders that they name
+rm -rf "$site"
+mkdir -p "$site"
+cp -r docs "$site/docs"
+cp docs/site/conf.py docs/site/python_api.md "$site/docs"
+cp examples/tutorial.ipynb "$site/docs"
+cp CHANGELOG.md "$site/docs/changes.md"
+printf 'ROOT = %s\n' "$top" >"$site/docs/place"
+for name in examples data include tests benchmarks scripts man src CONTRIBUTING.md README.md CHANGELOG.md CITATION.cff LICENSE; do
+   ln -s "$top/$name" "$site/$name"
+done
+# Where the notebook finds its cases
+ln -s "$top"/examples/{paper,sweeps,materials,identification} "$top"/examples/*.csv "$site/docs"
+
+export VCOR_LIBRARY=$top/build/release/libvcor_python.so PYTHONPATH=$top/python/src
+"$venv/bin/python" -m sphinx -W --keep-going -q -b html "$site/docs" "$site/html"
+"$venv/bin/ford" -q -o "$site/html/fortran" docs/api.md
+cp "$site/html/README.html" "$site/html/index.html"
+printf 'site: %s\n' "$site/html/index.html"
