@@ -3,18 +3,19 @@
 
     scripts/manual.py [--check] [PROGRAM]        default: build/release/vcor
 
-`vcor help --json` gives the commands, keys, columns, statuses and exit codes. The prose around them
-is in scripts/manual/*.md, where a line {{name}} stands for a part that is made here. With --check
+`vcor help --json` gives the commands, keys, columns, statuses and exit codes; the parsers of the Python package,
+which has to be importable (build/venv/bin/python), give the options of its commands. The prose around them is in
+scripts/manual/*.md, where a line {{name}} stands for a part that is made here. With --check
 nothing is written, and the exit code is 1 if a page is not what it should be.
 """
 
 import argparse
 import json
+import os
 import re
 import subprocess
 import sys
 import textwrap
-import tomllib
 from pathlib import Path
 
 import completion
@@ -78,14 +79,40 @@ def commands(document, man):
     return "\n\n".join(blocks)
 
 
+def package_options(name):
+    """Arguments of a command of the Python package: what is typed, and what it means."""
+    from vcor._command import parser_of
+
+    parser = parser_of(name)
+    usage = (parser.usage or "").replace("%(prog)s", parser.prog).splitlines()
+    rows, words = [], []
+    for action in parser._actions:
+        if action.dest in ("help", "version"):
+            continue
+        value = action.metavar or ("|".join(action.choices) if action.choices else action.dest.upper())
+        takes_value = action.nargs != 0
+        term = " ".join([*action.option_strings[:1], *([value] if takes_value else [])])
+        meaning = (action.help or "") % {"default": action.default}
+        if action.choices and action.metavar is None and len(value) > 30:
+            term = term.replace(value, action.dest.upper())
+            meaning += f"; one of {', '.join(map(str, action.choices))}"
+        rows.append((term, meaning))
+        if not action.option_strings:
+            many = " ..." if action.nargs in ("+", "*") else ""
+            words.append(f"{value}{many}")
+    return [line.strip() for line in usage] or [f"{parser.prog} {' '.join(words)} [options]"], parser.description, rows
+
+
 def package_commands(document, man):
-    """Commands of the Python package, as far as this version has them."""
-    package = tomllib.loads((ROOT / "python/pyproject.toml").read_text(encoding="utf-8"))
-    return "\n".join(
-        item(f"vcor {one['name']}", f"{one['summary']}.")
-        for one in document["package_commands"]
-        if f"vcor-{one['name']}" in package["project"]["scripts"]
-    )
+    """Commands of the Python package with their options."""
+    blocks = []
+    for one in document["package_commands"]:
+        usage, words, rows = package_options(one["name"])
+        blocks.append(f"### `vcor {one['name']}`")
+        blocks.extend(f"`{line}`" for line in usage)
+        blocks.append(escaped(words))
+        blocks.append("\n".join(item(term, f"{meaning}") for term, meaning in rows))
+    return "\n\n".join(blocks)
 
 
 def exit_codes(document, man):
@@ -309,6 +336,8 @@ def main():
     parser.add_argument("program", nargs="?", default=str(ROOT / "build/release/vcor"))
     parser.add_argument("--check", action="store_true", help="compare the pages, write nothing")
     words = parser.parse_args()
+    sys.path.insert(0, str(ROOT / "python/src"))
+    os.environ.setdefault("VCOR_LIBRARY", str(Path(words.program).absolute().parent / "libvcor_python.so"))
     text = subprocess.run(
         [words.program, "help", "--json"], check=True, stdout=subprocess.PIPE, encoding="utf-8"
     ).stdout

@@ -2,11 +2,13 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
 import pytest
 from places import ROOT
+from vcor._command import MODULES, parser_of
 
 MAN = ["man/vcor.1", "man/vcor-input.5", "man/vcor-output.5"]
 MARKDOWN = ["docs/commands.md", "docs/input.md", "docs/output.md"]
@@ -109,6 +111,24 @@ def test_every_command_and_option(document, vcor, run):
             if line.startswith("  --"):
                 term = line.strip().split("  ")[0]
                 assert f"`{term}`" in page and f"\\fB{term}\\fR" in man
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_option_of_the_python_package(document, name):
+    """What argparse takes stands in the manual, under its command, and says what it means."""
+    page, man = ((ROOT / path).read_text() for path in ("docs/commands.md", "man/vcor.1"))
+    assert name in [one["name"] for one in document["package_commands"]]
+    page = page.split(f"\n### `vcor {name}`\n")[1].split("\n### ")[0]
+    man = man.replace("\\-", "-").split(f"\n.SS \\fBvcor {name}\\fR\n")[1].split("\n.SS ")[0]
+    parser = parser_of(name)
+    actions = [action for action in parser._actions if action.dest not in ("help", "version")]
+    assert len(actions) > 4
+    for action in actions:
+        word = (action.option_strings or [action.metavar])[0]
+        assert action.help and len(action.option_strings) <= 1, word
+        assert re.search(rf"^- `{word}[ `]", page, re.MULTILINE), word
+        assert re.search(rf"^\\fB{word}( .*)?\\fR$", man, re.MULTILINE), word
+        assert word in parser.format_help()
 
 
 def test_the_parser_takes_every_option(document, vcor):

@@ -100,7 +100,7 @@ def _print(text: str) -> None:
         raise FileError(f"cannot write the standard output: {error.strerror}") from None
 
 
-def _run(name: str, module: str) -> None:
+def _run(name: str) -> None:
     """Run the command of a module, if what it needs is there."""
     # a reader that has enough ends the command in silence, as it ends the program
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
@@ -111,7 +111,7 @@ def _run(name: str, module: str) -> None:
         printed = io.StringIO()
         try:
             with contextlib.redirect_stdout(printed):
-                importlib.import_module(f"vcor.{module}").main()
+                importlib.import_module(f"vcor.{MODULES[name]}").main()
         except OSError as error:
             what = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
             raise FileError(f"{what}{error.strerror or error}") from None
@@ -124,12 +124,27 @@ def _run(name: str, module: str) -> None:
             _print(printed.getvalue())
 
 
+#: Module of each command, with its `main` and `_parser`
+MODULES = {
+    "card": "exchange.cards",
+    "export": "exchange.codes",
+    "fit": "materials.fit_command",
+    "identify": "materials.identification",
+    "master": "materials.master",
+    "plot": "plot",
+    "table": "materials.table",
+    "uncertainty": "uncertainty",
+}
+
+
+def parser_of(name: str) -> Parser:
+    """The options of a command, for its page of the manual."""
+    made = importlib.import_module(f"vcor.{MODULES[name]}")._parser()
+    assert isinstance(made, Parser)
+    return made
+
+
 # The commands vcor-NAME
-card = functools.partial(_run, "card", "exchange.cards")
-export = functools.partial(_run, "export", "exchange.codes")
-fit = functools.partial(_run, "fit", "materials.fit_command")
-identify = functools.partial(_run, "identify", "materials.identification")
-master = functools.partial(_run, "master", "materials.master")
-plot = functools.partial(_run, "plot", "plot")
-table = functools.partial(_run, "table", "materials.table")
-uncertainty = functools.partial(_run, "uncertainty", "uncertainty")
+card, export, fit, identify, master, plot, table, uncertainty = (
+    functools.partial(_run, name) for name in MODULES
+)

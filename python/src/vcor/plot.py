@@ -742,6 +742,7 @@ def save(made: Figure, path: str | os.PathLike[str]) -> None:
 
 
 def _parser() -> _command.Parser:
+    """Options of `vcor plot`."""
     parser = _command.Parser(
         "plot",
         description="Draw figures of results: FILE.h5 of vcor run or vcor material, or materials "

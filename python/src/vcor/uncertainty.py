@@ -588,8 +588,8 @@ def _report(found: Uncertainty) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor uncertainty`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor uncertainty`."""
     parser = _command.Parser(
         "uncertainty",
         description="How uncertain the results of an impact are, and by what: errors of the "
@@ -606,10 +606,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--covariance", metavar="FIT.json", help="JSON of vcor fit or vcor identify")
     add("--samples", metavar="N", type=int, default=4096, help="impacts that are solved, about")
     add("--quantity", metavar="NAME,NAME", help="columns of the summary, the first is drawn")
-    add("--seed", type=int, default=1)
-    add("--threads", metavar="N", type=int)
+    add("--seed", metavar="N", type=int, default=1, help="seed of the samples; default: 1")
+    add("--threads", metavar="N", type=int, help="threads; default: one per core")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor uncertainty`; exits with the codes of the program."""
     with _command.one_line():
-        _work(parser.options(arguments))
+        _work(_parser().options(arguments))
 
 
 def _work(options: argparse.Namespace) -> None:

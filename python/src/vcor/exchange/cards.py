@@ -273,8 +273,8 @@ _MARKS = (
 )
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor card`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor card`."""
     parser = _command.Parser(
         "card",
         description="Write a material of a case as a card of a finite element program, or read "
@@ -296,8 +296,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--accuracy", type=float, default=_ACCURACY, metavar="ERROR", help=what)
     what = "reading: modulus at time zero in the units of the card, if the card has none"
     add("--modulus", type=float, metavar="E", help=what)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor card`; exits with the codes of the program."""
     with _command.one_line():
-        _work(parser.options(arguments))
+        _work(_parser().options(arguments))
 
 
 def _work(options: argparse.Namespace) -> None:

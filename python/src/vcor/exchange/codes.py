@@ -523,8 +523,8 @@ def _rows(*columns: Floats) -> str:
     return "\n".join(",".join(f"{x:.17g}" for x in row) for row in zip(*columns, strict=True))
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor export`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor export`."""
     parser = _command.Parser(
         "export",
         description="Input for other programs from e(v) of a case: the law that they have, fitted "
@@ -532,7 +532,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "figure.",
     )
     add = parser.add_argument
-    add("case", metavar="CASE.nml")
+    add("case", metavar="CASE.nml", help="case of a pair of bodies")
     add("--for", metavar="PROGRAM", dest="target", required=True,
         help=f"one of {', '.join(TARGETS)}")  # fmt: skip
     add("--velocities", metavar="A:B:N", required=True,
@@ -542,11 +542,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--master", action="store_true",
         help="table of e over (m/sqrt(R v))^(2/5), for all sizes of a pair")  # fmt: skip
     add("--law", metavar="N", type=int, default=1, help="law of the header; default: the best, 1")
-    add("--threads", metavar="N", type=int)
+    add("--threads", metavar="N", type=int, help="threads; default: one per core")
     parser.add_outputs()
     parser.set_defaults(output=None)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor export`; exits with the codes of the program."""
     with _command.one_line():
-        _work(parser.options(arguments))
+        _work(_parser().options(arguments))
 
 
 def _work(options: argparse.Namespace) -> None:

@@ -268,8 +268,8 @@ def percent(ratio: float) -> str:
     return f"{100 * ratio:.{max(0, 1 - exponent)}f} %"
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor fit`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor fit`."""
     parser = _command.Parser(
         "fit",
         usage="vcor fit DATA [options]\n       vcor fit --from-model CASE.nml[:MATERIAL] [options]",
@@ -311,8 +311,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--json", metavar="FILE", help="write values, standard errors, covariance, misfit, band "
         "and group as JSON, such as vcor uncertainty --covariance reads")  # fmt: skip
     add("--quiet", action="store_true", help="print nothing")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor fit`; exits with the codes of the program."""
     with _command.one_line():
-        _work(parser.options(arguments))
+        _work(_parser().options(arguments))
 
 
 def _whole(text: str) -> int:

@@ -425,8 +425,8 @@ def _pairs(words: Sequence[str], option: str) -> dict[str, float]:
     return found
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor identify`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor identify`."""
     parser = _command.Parser(
         "identify",
         description="Identify parameters of a case from measured impacts (a row each: velocity or "
@@ -444,10 +444,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--error", metavar="NAME=VALUE", action="append", default=[], help=error)
     model = "another model of the material, such as sls or prony:2; several are compared"
     add("--model", metavar="NAME,NAME", action="append", default=[], help=model)
-    add("--seed", type=int, default=1, help="seed of the starts")
+    add("--seed", metavar="N", type=int, default=1, help="seed of the starts; default: 1")
     add_data_options(parser)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor identify`; exits with the codes of the program."""
     with _command.one_line():
-        _work(parser.options(arguments))
+        _work(_parser().options(arguments))
 
 
 def _work(options: argparse.Namespace) -> None:

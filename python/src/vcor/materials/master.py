@@ -279,8 +279,8 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float | None = None
     return found
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor master`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor master`."""
     parser = _command.Parser(
         "master",
         description="Master curve and shift factors of moduli at several temperatures. Writes "
@@ -293,13 +293,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("--reference", metavar="TEMPERATURE", help="such as 20C or 293.15K; default: the middle")
     what = "for shear moduli: Poisson's ratio, by which they become tensile ones"
     add("--poisson-ratio", type=float, metavar="NU", help=what)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor master`; exits with the codes of the program."""
     # argparse takes -5C for an option
     words = list(sys.argv[1:] if arguments is None else arguments)
     if "--reference" in words[:-1]:
         i = words.index("--reference")
         words[i : i + 2] = [f"--reference={words[i + 1]}"]
     with _command.one_line():
-        _work(parser.options(words))
+        _work(_parser().options(words))
 
 
 def _work(options: argparse.Namespace) -> None:

@@ -80,8 +80,8 @@ def _text(head: str, rows: zip[tuple[float, float]]) -> str:
     return head + "\n" + "".join(f"{float(x)!r},{float(y)!r}\n" for x, y in rows)
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor table`; exits with the codes of the program."""
+def _parser() -> _command.Parser:
+    """Options of `vcor table`."""
     parser = _command.Parser(
         "table",
         description="Relaxation moduli or shift factors of a file of measured data as the plain "
@@ -94,9 +94,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     what = "which curve, where the data have several, such as 20C or 293K"
     parser.add_argument("--temperature", metavar="T", help=what)
     parser.add_argument("--quiet", action="store_true", help="do not say what was taken")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor table`; exits with the codes of the program."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     with _command.one_line():
-        _work(parser.options(_command.joined(words, "--temperature")))
+        _work(_parser().options(_command.joined(words, "--temperature")))
 
 
 def _work(options: argparse.Namespace) -> None:
