@@ -193,13 +193,15 @@ contains
 
       character(len=:), allocatable :: time, too_light, reason
       real(wp) :: last, end_time
-      logical :: was_short
+      logical :: was_short, gave_up
 
       if (any(outcome%status == [contact_separated, contact_resting])) return
       ! a solver may go on until the end of the contact
       last = trajectory%state(1, trajectory%last)
+      gave_up = .false.
       if (job%case%given('solver', 'end_time')) then
          call job%case%get('solver', 'end_time', end_time)
+         gave_up = last < end_time
          last = min(last, end_time)
       end if
       time = short(last)
@@ -213,6 +215,7 @@ contains
          reason = 'give a longer solver.end_time'
          if (job%method == 'direct') reason = reason//'; a contact shorter than the ' &
             //'steps is missed, give a shorter solver.time_step'
+         if (gave_up) reason = 'a contact this long has too many steps to go on to solver.end_time'
          if (too_light /= '' .and. .not. was_short) reason = too_light
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
             //'within '//time//' s: '//reason)

@@ -55,8 +55,9 @@ for preset in debug release; do
    begin "damaged cases and data files from seed $first, $preset build"
    VCOR=$PWD/build/$preset/vcor "$venv/bin/python" tests/cli/fuzz.py "$first" "$count"
 done
-begin "damaged results, seed $first"
-VCOR=$PWD/build/release/vcor "$venv/bin/python" tests/cli/damage.py --count "$count" --seed "$first"
+begin "damaged input of the package, seed $first"
+VCOR=$PWD/build/release/vcor VCOR_LIBRARY=$PWD/build/release/libvcor_python.so \
+   PYTHONPATH=$PWD/python/src "$venv/bin/python" python/tests/fuzz_package.py "$first" "$count"
 echo $((first + count)) >build/test_long.seed
 
 begin "end"

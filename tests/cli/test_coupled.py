@@ -166,6 +166,17 @@ def test_an_early_end(vcor):
     assert "time_step" not in done.err
 
 
+def test_an_end_time_that_is_out_of_reach(vcor):
+    """Nothing is gained by a later one, and nothing says so."""
+    fluid = "model = 'prony', equilibrium_modulus = 1e-3, moduli = 1e6, times = 1e-3"
+    case = text("sls", "sphere", "bonded", 0.45, "body", "end_time = 1e4")
+    case = case.replace("base = 'bonded', ", "").replace(MATERIALS["sls"], fluid)
+    vcor.write(case)
+    done = vcor("run", "case.nml")
+    assert done.code == NUMERICAL
+    assert "too many steps to go on to solver.end_time" in done.err
+
+
 def test_verify_compares_two_meshes(vcor):
     """More digits than two meshes have in common are not claimed."""
     vcor.write(text("sls", "sphere", "half_space", 0.5, "body", "accuracy = 1e-4"))
