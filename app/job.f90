@@ -7,7 +7,7 @@ module vcor_app_job
    use vcor_case_catalogue, only : catalogue, key_t, real_key
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
-   use vcor_case_unread, only : method_of, refuse_unread
+   use vcor_case_problem, only : method_of
    use vcor_case_values, only : range_message
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
@@ -70,10 +70,9 @@ contains
                   error, option='--set')
             end do
             if (.not. allocated(error)) call validate(job%case, error)
-            if (.not. allocated(error)) call refuse_unread(job%case, &
-               request%command == 'material', error)
             if (.not. allocated(error)) call read_data(job%case, error)
-            if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error)
+            if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error, &
+               all_materials=request%command == 'material')
             if (allocated(error)) return
             if (request%command == 'verify' .and. job%sweep%is_grid()) call job%case%refuse( &
                'sweep', 'parameter', 1, 'verify takes single impacts, found a &sweep group', error)

@@ -6,7 +6,7 @@ module vcor_app_material
    use vcor_app_job, only : find_window, job_t, window_t
    use vcor_app_screen, only : heading, line, short, significant
    use vcor_case_printed, only : case_text
-   use vcor_case_problem, only : material_of_case
+   use vcor_case_body, only : material_of_case
    use vcor_error, only : error_t
    use vcor_io_file, only : write_stdout
    use vcor_io_results, only : moduli_tables

@@ -86,16 +86,18 @@ contains
          character(len=:), allocatable :: lines, method
          logical :: is_shown
 
-         lines = as_line('mechanics: '//mechanics_of(job%case))
-         is_shown = .false.
-         if (outcome%status == contact_separated) then
-            call solve_exact(job%case, outcome, exact, is_shown)
-            if (is_shown) lines = as_line('mechanics: '//mechanics_of(job%case)//'; exact: ' &
-               //mechanics_of(job%case, exact))
-            if (allocated(exact%failure)) lines = lines &
-               //as_line('note: no result with exact mechanics: '//exact%failure)
-            lines = lines//measures_report(outcome, worker%problem%surroundings)
-         end if
+         associate (reading => job%sweep%problem%reading)
+            lines = as_line('mechanics: '//mechanics_of(job%case, reading))
+            is_shown = .false.
+            if (outcome%status == contact_separated) then
+               call solve_exact(job%case, outcome, exact, is_shown)
+               if (is_shown) lines = as_line('mechanics: '//mechanics_of(job%case, reading) &
+                  //'; exact: '//mechanics_of(job%case, reading, exact))
+               if (allocated(exact%failure)) lines = lines &
+                  //as_line('note: no result with exact mechanics: '//exact%failure)
+               lines = lines//measures_report(outcome, worker%problem%surroundings)
+            end if
+         end associate
          if (.not. is_shown) exact%outcome = outcome_t()
          associate (course => worker%trajectory)
             ! a kernel that is not a finite sum of exponentials was approximated

@@ -8,9 +8,9 @@ module vcor_app_validity
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_grid, only : grid_t
    use vcor_case_identified, only : find_reliance, reliance_t
-   use vcor_case_problem, only : material_of_case
+   use vcor_case_body, only : material_of_case
    use vcor_case_checks, only : implausible_numbers, note_length
-   use vcor_case_unread, only : why_unread
+   use vcor_case_reading, only : reading_t
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
@@ -64,8 +64,9 @@ contains
    end subroutine warn_of_implausible
 
    !> Mechanics of a case, as far as the impact reads them
-   function mechanics_of(case, exact) result(text)
+   function mechanics_of(case, reading, exact) result(text)
       type(case_t), intent(in) :: case
+      type(reading_t), intent(in) :: reading
       !> Other mechanics to name instead
       type(model_t), intent(in), optional :: exact
       !> Such as `waves relaxing, law boltzmann`
@@ -79,7 +80,7 @@ contains
 
       text = ''
       do i = 1, size(keys)
-         if (why_unread(case, case%address(trim(groups(i)), trim(keys(i)))) /= '') cycle
+         if (.not. reading%has(case%address(trim(groups(i)), trim(keys(i))))) cycle
          call case%get(trim(groups(i)), trim(keys(i)), word)
          if (word == 'free') cycle
          if (present(exact) .and. keys(i) /= 'base') then

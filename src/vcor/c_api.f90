@@ -16,8 +16,8 @@ module vcor_c_api
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : case_text, value_text
-   use vcor_case_problem, only : material_of_case, problem_t
-   use vcor_case_unread, only : refuse_unread
+   use vcor_case_body, only : material_of_case
+   use vcor_case_problem, only : problem_t
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : history_steps
@@ -707,7 +707,7 @@ contains
          call case%set(case%address('sweep', 'values', item), &
             merge(values(i, :1), 1.0_wp, ieee_is_finite(values(i, :1))), given=.true.)
       end do
-      call check(case, .false., error)
+      call check(case, error)
       if (.not. allocated(error)) call new_sweep(handle%sweep, case, error)
       if (allocated(error)) return
       do i = 1, size(handle%sweep%grid%axes)
@@ -722,14 +722,11 @@ contains
    end subroutine build
 
    !> Check a case and read its data files
-   subroutine check(case, all_materials, error)
+   subroutine check(case, error)
       type(case_t), intent(inout) :: case
-      !> Whether to read materials that belong to no body
-      logical, intent(in) :: all_materials
       type(error_t), allocatable, intent(out) :: error
 
       call validate(case, error)
-      if (.not. allocated(error)) call refuse_unread(case, all_materials, error)
       if (.not. allocated(error)) call read_data(case, error)
    end subroutine check
 
@@ -755,7 +752,7 @@ contains
          call raise(error, error_usage, "there is no material '"//shortened(fortran(name)) &
             //"'; "//suggestion(canonical_name(fortran(name)), material_names(case)))
       else
-         call check(case, .true., error)
+         call check(case, error)
       end if
       if (.not. allocated(error)) call material_of_case(case, item, material, error)
 !$omp end critical (vcor_c_api)

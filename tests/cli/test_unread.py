@@ -41,7 +41,7 @@ CASES = {
     "   relaxing_modulus = 6e8, beta = 700 /\n",
 }
 
-# Values, two for a sweep, that an impact must feel where it reads them; others are multiples
+# Values, two for a sweep, that must change an impact that reads them; others are multiples
 VALUES = {
     "velocity": ("3", "7"),
     "poisson_ratio": ("0.1", "0.3"),
@@ -161,6 +161,15 @@ def test_reasons(vcor, command, kind, setting, reason):
     vcor.write(CASES[kind])
     path = setting.partition("=")[0]
     vcor.refuses(command, "case.nml", "--set", setting, code=INPUT, at=f"--set {path}", says=reason)
+
+
+def test_an_impossible_first_point(vcor):
+    """What the impact leaves out for a reason is refused even if the first point cannot be built."""
+    text = re.sub(r"(&plate\b)", r"\1 surface_radius = -0.02, ", CASES["sls"])
+    vcor.write(text + "&sweep parameter = 'sphere.radius', values = 0.03, 0.01 /\n")
+    assert vcor("run", "case.nml", "--print", "status").out.split() == ["invalid", "separated"]
+    says = "adams_bashforth"
+    vcor.refuses("run", "case.nml", "--set", "solver.form=b", code=INPUT, at="--set solver.form", says=says)
 
 
 def test_what_stands_in_the_file_may_stay(vcor):

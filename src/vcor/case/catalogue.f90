@@ -1,8 +1,7 @@
 !> The catalogue: a single table of all groups and keys of a case
 !>
-!> Reading, checking, printing, sweeps and help follow from it. A new key needs a new row here, code
-!> that uses its value, and a line in `vcor_case_unread` that states when it is read. The keys of
-!> `&material` come from the parameters of the models, a row for each key of each model; rows of one
+!> Reading, checking, printing, sweeps and help follow from it. A new key needs a new row here and code
+!> that reads its value, see `vcor_case_reading`. The keys of `&material` come from the parameters of the models, a row for each key of each model; rows of one
 !> key have the same kind and default. Texts have fixed lengths, as arrays of constants require; a
 !> unit test fails if one is full.
 module vcor_case_catalogue

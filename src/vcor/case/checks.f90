@@ -9,15 +9,15 @@ module vcor_case_checks
       keys_of, last_row, list_key, real_key, row_for_model, wanted
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : value_text
-   use vcor_case_problem, only : material_of_case
-   use vcor_case_unread, only : has_body, method_of, why_no_shift, why_unread
+   use vcor_case_body, only : material_of_case
+   use vcor_case_problem, only : has_body, method_of, why_no_pair
    use vcor_case_values, only : range_message
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
-   use vcor_material_shift, only : keys_needed, shift_keys
+   use vcor_material_shift, only : key_laws, keys_needed, shift_keys
    use vcor_number, only : real_text
    use vcor_text, only : canonical_name, printable, quoted, shortened
-   use vcor_words, only : join_words, suggestion
+   use vcor_words, only : contains_word, join_words, suggestion
    implicit none
    private
 
@@ -101,7 +101,7 @@ contains
       end do
       call check_body(self, 'sphere', error)
       if (.not. allocated(error)) call check_body(self, 'plate', error)
-      if (.not. allocated(error)) call check_temperature(self, error)
+      if (.not. allocated(error)) call check_temperature(self, swept, error)
       if (.not. allocated(error)) call check_coupled(self, error)
       if (.not. allocated(error)) call check_stem(self, error)
       if (.not. allocated(error)) call new_grid(self, grid, error)
@@ -174,19 +174,21 @@ contains
       integer, intent(in) :: item
       type(error_t), allocatable, intent(inout) :: error
 
-      character(len=:), allocatable :: shift, name, reason
+      character(len=:), allocatable :: shift, name
       type(address_t) :: address
+      logical :: belongs
       integer :: i
 
       call self%get('material', 'shift', shift, item)
       call self%get('material', 'name', name, item)
       do i = 1, size(shift_keys)
          address = self%address('material', trim(shift_keys(i)), item)
-         reason = why_no_shift(self, address)
+         belongs = contains_word(key_laws(i), shift)
          if (self%given('material', trim(shift_keys(i)), item)) then
-            if (reason /= '') call self%refuse('material', trim(shift_keys(i)), item, &
-               'the impact does not read it: '//reason, error)
-         else if (i <= keys_needed .and. reason == '' .and. all(.not. swept == address)) then
+            if (.not. belongs) call self%refuse('material', trim(shift_keys(i)), item, &
+               "the impact does not read it: '"//trim(shift_keys(i)) &
+               //"' is for a material of shift "//join_words(trim(key_laws(i))), error)
+         else if (i <= keys_needed .and. belongs .and. all(.not. swept == address)) then
             call self%refuse('material', 'shift', item, "key '"//trim(shift_keys(i)) &
                //"' is missing in &material "//quoted(shortened(name))//" with shift = '"//shift &
                //"', expected "//wanted(catalogue(address%row)), error)
@@ -195,18 +197,29 @@ contains
       end do
    end subroutine check_shift
 
-   !> Check that the temperature shifts at least one material
-   subroutine check_temperature(self, error)
+   !> Check that the temperature, given or swept, shifts at least one material
+   subroutine check_temperature(self, swept, error)
       !> A case whose bodies have materials
       type(case_t), intent(in) :: self
+      !> Addresses of the swept keys
+      type(address_t), intent(in) :: swept(:)
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: reason
+      character(len=*), parameter :: reason = 'with impact.temperature the material of the sphere ' &
+         //'or that of the plate needs a shift, neither has one'
+      character(len=:), allocatable :: sphere, plate
+      integer :: i
 
-      if (.not. self%given('impact', 'temperature')) return
-      reason = why_unread(self, self%address('impact', 'temperature'))
-      if (reason /= '') call self%refuse('impact', 'temperature', 1, 'the impact does not read ' &
-         //'it: '//reason, error)
+      call self%get('material', 'shift', sphere, self%material_of('sphere'))
+      call self%get('material', 'shift', plate, self%material_of('plate'))
+      if (sphere//plate /= '') return
+      if (self%given('impact', 'temperature')) call self%refuse('impact', 'temperature', 1, &
+         'the impact does not read it: '//reason, error)
+      do i = 1, size(swept)
+         if (.not. swept(i) == self%address('impact', 'temperature')) cycle
+         call self%refuse('sweep', 'parameter', i, "found 'impact.temperature', which the impact " &
+            //'does not read: '//reason, error)
+      end do
    end subroutine check_temperature
 
    !> Check that keys do not contradict the coupled contact: it recedes, its pair is in series, it
@@ -235,8 +248,8 @@ contains
       if (all(method /= ['auto   ', 'coupled'])) then
          call self%refuse('solver', 'method', 1, "found method = '"//method//"' with "//cause &
             //", expected 'auto' or 'coupled', which alone solves it", error)
-      else if (all(waves /= ['none', 'body']) .and. why_unread(self, &
-               self%address('plate', 'waves')) == '') then
+      else if (all(waves /= ['none', 'body']) .and. self%model(find_group('material'), &
+               self%material_of('plate')) /= 'rigid') then
          call self%refuse('plate', 'waves', 1, "found waves = '"//waves//"' with "//cause &
             //", expected 'body' or 'none'", error)
       end if
@@ -245,7 +258,8 @@ contains
          address = self%address(trim(keys(1, i)), trim(keys(2, i)))
          if (.not. self%given(trim(keys(1, i)), trim(keys(2, i)))) cycle
          ! a flat punch does not recede, and the pair of a rigid body is none
-         if (keys(1, i) == 'contact' .and. why_unread(self, address) /= '') cycle
+         if (keys(2, i) == 'law' .and. self%model(find_group('sphere'), 1) == 'punch') cycle
+         if (keys(2, i) == 'pair' .and. why_no_pair(self) /= '') cycle
          found = value_text(catalogue(address%row), self%entry(address))
          if (found == keys(3, i)) cycle
          allowed = trim(keys(3, i))

@@ -12,7 +12,6 @@ module vcor_case_grid
       row_for_model
    use vcor_number, only : log_spacing, real_text, spaced
    use vcor_text, only : integer_text, link_name, shortened
-   use vcor_case_unread, only : why_unread
    use vcor_words, only : join_words
    implicit none
    private
@@ -144,7 +143,7 @@ contains
       type(axis_t), intent(out) :: axis
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: path, message, model, reason
+      character(len=:), allocatable :: path, message, model
       integer :: group, row, i
 
       call case%get('sweep', 'parameter', path, item)
@@ -168,10 +167,6 @@ contains
       else if (catalogue(row)%value_kind /= real_key .and. axis%address%element == 0) then
          message = "found '"//shortened(path)//"', which is "//kind_of(catalogue(row)) &
             //'; expected a single real number'
-      else
-         reason = why_unread(case, axis%address)
-         if (reason /= '') message = "found '"//shortened(path) &
-            //"', which the impact does not read: "//reason
       end if
       do i = 1, size(before)
          if (before(i)%address == axis%address) then

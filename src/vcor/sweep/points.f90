@@ -20,8 +20,10 @@ module vcor_sweep_points
 !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, wanted
+   use vcor_case_cause, only : may_contribute
    use vcor_case_grid, only : grid_t, new_grid
-   use vcor_case_problem, only : may_contribute, problem_of_case, problem_t
+   use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_reading, only : refuse_unread
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
@@ -138,13 +140,18 @@ contains
    end function is_grid
 
    !> Build what all impacts of a case have in common
-   subroutine new_sweep(self, case, error)
+   subroutine new_sweep(self, case, error, all_materials)
       type(sweep_t), intent(out) :: self
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> Error of code `error_input`, unallocated on success
+      !> Error of code `error_input`, also if a value that varies or was set after reading the case
+      !> has no effect; unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Whether materials have an effect that no body uses; absent: no
+      logical, intent(in), optional :: all_materials
 
+      type(error_t), allocatable :: unread
+      logical :: shows_all
       integer :: i, j, n, row
 
       call new_grid(case, self%grid, error)
@@ -166,6 +173,13 @@ contains
          end associate
       end do
       call problem_of_case(self%problem, self%case, error)
+      shows_all = .false.
+      if (present(all_materials)) shows_all = all_materials
+      call refuse_unread(self%problem%reading, case, .not. allocated(error), shows_all, unread)
+      if (allocated(unread)) then
+         call move_alloc(unread, error)
+         return
+      end if
       if (.not. allocated(error)) return
       ! other values of the parameters that vary may be valid
       do i = 1, n

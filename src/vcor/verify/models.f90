@@ -3,7 +3,6 @@ module vcor_verify_models
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
-   use vcor_case_unread, only : why_unread
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : trajectory_t
@@ -42,18 +41,22 @@ contains
          'relaxing', 'frozen', 'hereditary']
       character(len=*), parameter :: laws(2) = [character(len=9) :: 'boltzmann', 'receding']
       type(model_t) :: all(2*size(plates)*size(laws) + 2)
+      type(problem_t) :: problem
+      type(error_t), allocatable :: error
       character(len=:), allocatable :: waves, law, pair
-      logical :: exists
+      logical :: exists, has_law
       integer :: i, j, k, n, half
 
       call case%get('plate', 'waves', waves)
       call case%get('contact', 'law', law)
       call case%get('contact', 'pair', pair)
       n = 0
-      do k = 1, merge(2, 1, reads(case, 'pair'))
+      call problem_of_case(problem, case, error)
+      has_law = problem%reading%has(case%address('contact', 'law'))
+      do k = 1, merge(2, 1, problem%reading%has(case%address('contact', 'pair')))
          half = n
          do i = 1, size(plates)
-            do j = 1, merge(size(laws), 1, reads(case, 'law'))
+            do j = 1, merge(size(laws), 1, has_law)
                associate (model => all(n + 1))
                   model = model_t(plates(i), laws(j), pair, &
                      plates(i) == waves .and. laws(j) == law .and. k == 1)
@@ -73,7 +76,7 @@ contains
       ! of any thickness, and the limit of a thick plate
       do i = 1, merge(2, 1, case%given('plate', 'half_thickness'))
          ! a flat punch does not recede
-         if (reads(case, 'law')) law = 'receding'
+         if (has_law) law = 'receding'
          all(n + 1) = model_t('body', law, 'series', waves == 'body' .and. i == 1)
          all(n + 1)%is_half_space = i == 2
          call solve_model(case, all(n + 1), exists)
@@ -93,15 +96,6 @@ contains
       yes = base == 'free' .and. (case%given('plate', 'half_thickness') &
          .or. case%given('plate', 'thickness'))
    end function has_thickness
-
-   !> Whether a key of &contact makes a difference
-   pure function reads(case, key)
-      type(case_t), intent(in) :: case
-      character(len=*), intent(in) :: key
-      logical :: reads
-
-      reads = why_unread(case, case%address('contact', key)) == ''
-   end function reads
 
    !> Whether two outcomes differ in restitution by more than their errors, or only one has any. One
    !> of contact and plate solved as one has that of the sphere only
@@ -135,10 +129,8 @@ contains
 
       other = case
       call other%set(other%address('plate', 'waves'), trim(model%waves), given=.false.)
-      if (reads(case, 'law')) &
-         call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
-      if (reads(case, 'pair')) &
-         call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
+      call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
+      call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
       call other%unset(other%address('solver', 'continue_after_separation'))
