@@ -37,7 +37,8 @@ PARTS = {
     "Is it valid": ["validity", "impact", "layers", "accuracy", "faq"],
     "Sweeps and figures": ["sweeps", "figures", "gallery", "python", "distributed"],
     "Recipes": ["recipes", "rebound", "identification", "exchange", "cards", "measurements"],
-    "Reference": ["commands", "input", "output", "library", "python_api", "glossary"],
+    "Reference": ["commands", "input", "output", "library", "python_api", "reference_impacts",
+                  "glossary"],
     "Theory": ["theory", "reproducing_the_paper"],
     "Development": ["architecture", "performance", "scaling", "changes"],
 }

@@ -8,7 +8,7 @@ import sys
 import pytest
 from conftest import ROOT
 
-PAGES = ["python.md", "distributed.md", "exchange.md", "recipes.md"]
+PAGES = ["python.md", "distributed.md", "exchange.md", "recipes.md", "reference_impacts.md"]
 SCRIPTS = {
     f"{name}-{i}": script
     for name in PAGES
@@ -31,6 +31,7 @@ def test_a_script_of_the_pages(script, tmp_path):
     assert ("10_000_000" in script) == (FEWER[0] in script)
     script = script.replace(*FEWER)
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    (tmp_path / "data").symlink_to(ROOT / "data")
     (tmp_path / "script.py").write_text(script)
     done = subprocess.run(
         [sys.executable, "-W", "error", "script.py"],
