@@ -29,7 +29,7 @@ from program import FILE, NUMERICAL, USAGE, Vcor, complaint, program
 def solved(tmp_path_factory):
     """A long sweep, and its undisturbed files in the folder ref."""
     vcor = Vcor(tmp_path_factory.mktemp("long"))
-    write_long_sweep(vcor, 2.5)
+    write_long_sweep(vcor, 1.0)
     vcor.reference = vcor("run", "case.nml", "--output", "ref")
     assert vcor.reference.code == NUMERICAL
     return vcor
@@ -63,7 +63,7 @@ def test_kill_at_random(long):
         threads = ["--threads", random.choice("12")]
         process = begin(long, "--resume", "--quiet", *threads)
         if number % 2:
-            time.sleep(random.uniform(0.0, 2.5))
+            time.sleep(random.uniform(0.0, 1.0))
         else:
             while process.poll() is None and not part.exists():
                 time.sleep(0.01)

@@ -16,7 +16,6 @@ from ._library import (
     __version__,
 )
 from .case import Case, Material, read
-from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
 
 if TYPE_CHECKING:
     from .exchange.cards import card, read_card
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from .materials.fit import Fit, fit
     from .materials.identification import identify
     from .materials.master import master
+    from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
     from .uncertainty import propagate, sensitivities
 
 __all__ = [
@@ -56,7 +56,7 @@ __all__ = [
 for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, UsageError):
     _kind.__module__ = "vcor"
 
-#: What needs scipy, by its module; imported when it is used
+#: What needs scipy or reads files, by its module; imported when it is used
 _LATER = {
     "Fit": "materials.fit",
     "card": "exchange.cards",
@@ -64,6 +64,7 @@ _LATER = {
     "fit": "materials.fit",
     "identify": "materials.identification",
     "master": "materials.master",
+    "open": "results",
     "pair": "exchange.codes",
     "propagate": "uncertainty",
     "read_card": "exchange.cards",

@@ -13,10 +13,9 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import byref, c_char_p, c_double, c_int, c_void_p
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from . import _library
@@ -33,6 +32,9 @@ from ._library import (
     whole,
 )
 from ._text import write
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -368,7 +370,7 @@ class Case:
             for column, row in zip(columns, values, strict=True)
         }
         time_axis = variables.pop("time")
-        return xr.Dataset(variables, coords={"time": time_axis}, attrs=self._attrs({}))
+        return _dataset(variables, {"time": time_axis}, self._attrs({}))
 
     def verify(self) -> xr.Dataset:
         """Solve the case by all methods and compare them, as `vcor verify CASE` does.
@@ -389,13 +391,13 @@ class Case:
         names = ("best", "ive", "direct", "digits")
         values = np.empty((len(columns), len(names)))
         call("vcor_verify", self._pointer, values)
-        return xr.Dataset(
+        return _dataset(
             {name: ("quantity", values[:, i]) for i, name in enumerate(names)},
-            coords={
+            {
                 "quantity": list(columns),
                 "units": ("quantity", [column.unit for column in columns.values()]),
             },
-            attrs=self._attrs({}),
+            self._attrs({}),
         )
 
     def _describe(self, address: str) -> _library.Column:
@@ -476,7 +478,7 @@ class Case:
             address: (dim, axis, self._describe(address).attrs)
             for address, (dim, axis) in coords.items()
         }
-        return xr.Dataset(variables, coords=described, attrs=self._attrs(coords))
+        return _dataset(variables, described, self._attrs(coords))
 
     def _attrs(self, coords: Mapping[str, tuple[str, Floats]]) -> dict[str, str]:
         """What the program writes at the root of a file."""
@@ -571,6 +573,15 @@ def number(case: Case, address: str, missing: float = math.nan) -> float:
     """Number at an address of a case."""
     value = case[address]
     return float(value) if isinstance(value, (int, float)) else missing
+
+
+def _dataset(
+    variables: Mapping[str, Any], coords: Mapping[str, Any], attrs: Mapping[str, str]
+) -> xr.Dataset:
+    """Columns with their units, labelled. What needs no labels starts sooner, without xarray."""
+    import xarray as xr
+
+    return xr.Dataset(variables, coords=coords, attrs=attrs)
 
 
 def as_case(case: Case | str | os.PathLike[str]) -> Case:
