@@ -98,9 +98,9 @@ module vcor_app_commands
       entry_t("command", "verify"), &
       entry_t("usage", "vcor verify [CASE.nml ...] [options]"), &
       entry_t("summary", "verify the program, or cases"), &
-      entry_t("", "Without a case: compares the program with laws of impact and with independent " &
-      //"numbers. Each row shows the expected value, the value found, the deviation and its " &
-      //"tolerance."), &
+      entry_t("", "Without a case: compares the program with a number of each law of impact, " &
+      //"from closed forms and independent programs. Each row shows the expected value, the " &
+      //"value found, the deviation and its tolerance."), &
       entry_t("", "With cases: solves each case by internal variables (ive), at its accuracy and " &
       //"at one hundredth of it, and by product integration (direct) with 1000, 2000 and 4000 " &
       //"steps per contact, extrapolated; with waves 'body' by the coupled contact, at its " &

@@ -2,6 +2,7 @@
 module vcor_app_verify
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_job, only : job_t
+   use vcor_app_laws, only : evaluate, law_t, laws, verdict_t
    use vcor_app_screen, only : heading, padded, right, short, significant, visible
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated
@@ -9,7 +10,6 @@ module vcor_app_verify
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : status_name
    use vcor_text, only : integer_text
-   use vcor_verify, only : build_law, evaluate_law, law_count, law_t, verdict_t
    use vcor_verify_methods, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
       attempt_refined, compare, compared_t, comparison_t, error_of_best, is_honest
    use vcor_verify_models, only : model_t, solve_models
@@ -24,39 +24,54 @@ module vcor_app_verify
 
 contains
 
-   !> Evaluate the verification table and print it, law by law
+   !> Evaluate the laws and print a table
    subroutine verify_program(quiet, error)
       logical, intent(in) :: quiet
-      !> Error of code `error_numerical` if a row fails, unallocated on success
+      !> Error of code `error_numerical` if a check fails, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(law_t) :: law
       type(verdict_t), allocatable :: verdicts(:)
-      character(len=:), allocatable :: first
-      integer :: i, j, rows, failed
+      character(len=:), allocatable :: first, text
+      integer :: i, j, checks, failed
 
-      rows = 0
+      checks = 0
       failed = 0
       first = ''
-      if (.not. quiet) call write_stdout('vcor '//version//'  verification'//nl, error)
-      do i = 1, law_count
-         if (.not. allocated(error)) call build_law(i, law, error)
-         if (allocated(error)) return
-         call evaluate_law(law, verdicts)
-         if (.not. quiet) call write_stdout(nl//law_text(law, verdicts), error)
+      text = 'vcor '//version//'  verification'//nl//nl//'  '//padded('law', 32) &
+         //'method         expected            found deviation tolerance'//nl
+      do i = 1, size(laws)
+         call evaluate(laws(i), verdicts)
          do j = 1, size(verdicts)
-            rows = rows + 1
+            text = text//verdict_text(laws(i), verdicts(j))
+            checks = checks + 1
             if (verdicts(j)%passed) cycle
             failed = failed + 1
-            if (failed == 1) first = law%title//': '//trim(verdicts(j)%name)//', ' &
-               //trim(verdicts(j)%method)
+            if (failed == 1) first = trim(laws(i)%title)//', '//trim(verdicts(j)%method)
          end do
       end do
-      if (.not. quiet .and. .not. allocated(error)) call write_stdout(nl//integer_text(rows) &
-         //' checks, '//integer_text(failed)//' failed'//nl, error)
+      text = text//nl//'  A check passes if the deviation is at most the tolerance: twice the ' &
+         //'error of cor that the'//nl//'  method was asked for, and ten times that share of a ' &
+         //'contact time.'//nl//nl//'  sources of the expected numbers'//nl
+      do i = 1, size(laws)
+         text = text//'  '//padded(laws(i)%title, 32)//trim(laws(i)%source)//nl
+      end do
+      if (.not. quiet) call write_stdout(text//nl//integer_text(checks)//' checks, ' &
+         //integer_text(failed)//' failed'//nl, error)
       if (failed > 0 .and. .not. allocated(error)) call raise(error, error_numerical, &
-         integer_text(failed)//' of '//integer_text(rows)//' checks failed, the first one: '//first)
+         integer_text(failed)//' of '//integer_text(checks)//' checks failed, the first one: ' &
+         //first)
    end subroutine verify_program
+
+   !> A line of the table of laws
+   function verdict_text(law, verdict) result(text)
+      type(law_t), intent(in) :: law
+      type(verdict_t), intent(in) :: verdict
+      character(len=:), allocatable :: text
+
+      text = '  '//padded(law%title, 32)//verdict%method//significant(law%expected, 10, 16) &
+         //significant(verdict%found, 10, 17)//column(verdict%deviation, 10) &
+         //column(verdict%tolerance, 10)//'  '//merge('pass', 'FAIL', verdict%passed)//nl
+   end function verdict_text
 
    !> Solve a case by all methods and print how far they agree
    subroutine verify_case(job, quiet, error)
@@ -83,26 +98,6 @@ contains
       if (allocated(comparison%objection) .and. .not. allocated(error)) &
          call raise(error, error_numerical, job%case%source//': '//comparison%objection)
    end subroutine verify_case
-
-   !> A law as a table
-   function law_text(law, verdicts) result(text)
-      type(law_t), intent(in) :: law
-      type(verdict_t), intent(in) :: verdicts(:)
-      character(len=:), allocatable :: text
-
-      integer :: i
-
-      text = law%title//nl//'  source: '//law%source//nl//'  '//padded('check', 32) &
-         //'method         expected            found deviation tolerance'//nl
-      do i = 1, size(verdicts)
-         associate (row => verdicts(i))
-            text = text//'  '//padded(row%name, 32)//row%method//significant(row%expected, 10, 16) &
-               //significant(row%found, 10, 17)//column(row%deviation, 10) &
-               //column(row%tolerance, 10)//'  '//merge('pass', 'FAIL', row%passed)//nl
-            if (.not. row%passed) text = text//'    reason of the tolerance: '//trim(row%reason)//nl
-         end associate
-      end do
-   end function law_text
 
    !> Text of a comparison of methods
    function comparison_text(filename, title, comparison) result(text)

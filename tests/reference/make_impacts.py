@@ -311,7 +311,7 @@ def designed():
     yield "long rebound, receding", impact(
         (RIGID, dict(POWER, equilibrium_modulus=2e5)), "constant", "receding", velocity=1.0,
         half_thickness=0.006)
-    # the rows of `vcor verify` about bodies in series: the paper's geometry and mass
+    # bodies in series: the paper's geometry and mass
     for waves, law in (("none", "boltzmann"), ("hereditary", "receding")):
         case = impact((dict(SOFT_SLS, poisson_ratio=0.5), SLS), waves, law, "series",
                       velocity=10.0, half_thickness=0.02)

@@ -1,4 +1,4 @@
-"""Numbers of the Kelvin-Voigt and of Zener's elastic impact, for `vcor verify`.
+"""Numbers of the Kelvin-Voigt and of Zener's elastic impact, for `test_laws`.
 
 In units of T = (m/(k sqrt(v0)))^(2/5) and v0 T both are
 

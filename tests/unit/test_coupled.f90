@@ -36,6 +36,7 @@ program test_coupled
    call test_static()
    call test_zener()
    call test_thin_plate()
+   call test_approach_to_thin()
    call test_half_space_loss()
    call test_passive()
    call test_meshes()
@@ -431,6 +432,44 @@ contains
       end do
       call check_relative(missing(2), missing(1), 0.02_wp, "a thin plate is the limit, order one")
    end subroutine test_thin_plate
+
+   !> Where the contact is small against the thickness H, the compliance of a free plate is
+   !>
+   !>     C = (alpha/s) [1 - (2/(5 pi)) (6 - 6 nu)^(1/2) y ln y + O(y)],   y = s H/c_s
+   !>
+   !> The term with ln y acts as a spring between sphere and plate, so the restitution differs from
+   !> its limit by x [A ln(1/x) + B] + O(x^2 ln(x)^2), x = H/(c_s T), with A from Zener's impact with
+   !> such a spring. Moduli that no material has make x fall from 0.016 to 0.002
+   subroutine test_approach_to_thin()
+      real(wp), parameter :: none(0) = 0.0_wp, nu = 0.5_wp, density = 1100.0_wp, mass = 0.0326726_wp
+      real(wp), parameter :: modulus(2) = 1.5e18_wp*[1.0_wp, 2.0_wp**20], lambda = 0.5_wp
+      ! the accuracies over x of the second plate, and x ln(x)^2 of the first
+      real(wp), parameter :: a = 0.0248552_wp, tolerance = 1.0e-3_wp
+      type(prony_t) :: solid_of
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      real(wp) :: off(2), scale, thickness, x(2)
+      integer :: i
+
+      do i = 1, 2
+         solid_of = solid(modulus(i), none, none, density, nu)
+         call make_impact(impact, solid_of, base_half_space, 0.0_wp, 10.0_wp, mass, &
+            sphere(0.01_wp), has_waves=.false.)
+         scale = impact%time_scale(1.0e-12_wp)
+         thickness = sqrt(sqrt(3.0_wp*(1.0_wp - nu**2)/(modulus(i)*density)) &
+            /(4.0_wp*lambda*scale/mass))
+         x(i) = thickness/(sqrt(modulus(i)/(3.0_wp*density))*scale)
+         call make_impact(impact, solid_of, base_free, thickness, 10.0_wp, mass, sphere(0.01_wp))
+         call solve(impact, trajectory, 1.0e-6_wp)
+         off(i) = cor_of(impact, trajectory)
+         call make_impact(impact, solid_of, base_thin, thickness, 10.0_wp, mass, &
+            sphere(0.01_wp), has_waves=.false.)
+         call solve(impact, trajectory, 1.0e-6_wp)
+         off(i) = (off(i) - cor_of(impact, trajectory))/x(i)
+      end do
+      call check_close((off(2) - off(1))/log(x(1)/x(2)), a, tolerance, &
+         "a plate becomes thin as x ln(1/x)")
+   end subroutine test_approach_to_thin
 
    !> A slow impact on a half space loses W = kappa int (dF/dt)^2 dt, kappa = I(nu)/(2 pi rho c_s^3)
    !> (G. F. Miller and H. Pursey, Proc. R. Soc. A 223 (1954) 521, doi:10.1098/rspa.1954.0134)

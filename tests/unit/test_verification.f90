@@ -1,47 +1,15 @@
-!> Quantities of a row. (A pointer to a procedure inside a program would need an executable stack.)
-module test_verification_quantities
-   use vcor_impact_outcome, only : outcome_t
-   use vcor_kinds, only : wp
-   implicit none
-   private
-
-   public :: weighted_sum, twice_the_first
-
-contains
-
-   !> A sum of restitutions
-   pure function weighted_sum(outcomes) result(value)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: value
-
-      value = sum([1.0_wp, 2.0_wp]*outcomes%cor)
-   end function weighted_sum
-
-   !> Twice the first restitution
-   pure function twice_the_first(outcomes) result(value)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: value
-
-      value = 2.0_wp*outcomes(1)%cor
-   end function twice_the_first
-
-end module test_verification_quantities
-
-!> Judging: rows of the verification table, extrapolation, the comparison of methods
+!> Judging: extrapolation, the comparison of methods
 program test_verification
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
-      ieee_quiet_nan, ieee_value
-   use test_verification_quantities, only : twice_the_first, weighted_sum
-   use vcor_error, only : error_internal, error_t
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
+      ieee_value
+   use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_separated, contact_sticking
+   use vcor_impact_trajectory, only : contact_sticking
    use vcor_io_case_reader, only : override, read_case
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
-   use vcor_verify, only : build_law, evaluate_law, law_count
-   use vcor_verify_law, only : elastic, judge, law_t, row_t, sls, strike_t, verdict_t
    use vcor_verify_methods, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
       compare, comparison_t, is_honest, judge_ends, judge_numbers
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
@@ -53,13 +21,6 @@ program test_verification
    real(wp), parameter :: rounding = 1.0e-14_wp
 
    call suite("verification")
-   call test_judge()
-   call test_judge_of_pairs()
-   call test_judge_of_measures()
-   call test_judge_of_nothing()
-   call test_laws()
-   call test_wrong_law()
-   call test_law_that_does_not_exist()
    call test_richardson()
    call test_richardson_without_order()
    call test_honest()
@@ -75,183 +36,6 @@ contains
 
       nan = ieee_value(nan, ieee_quiet_nan)
    end function nan
-
-   !> A row about cor
-   function row_of(expected, tolerance) result(row)
-      real(wp), intent(in) :: expected
-      real(wp), intent(in) :: tolerance
-      type(row_t) :: row
-
-      row%name = "cor"
-      row%expected = expected
-      row%times = 0.0_wp
-      row%more = tolerance
-   end function row_of
-
-   !> An outcome with a restitution
-   function outcome_of(cor) result(outcome)
-      real(wp), intent(in) :: cor
-      type(outcome_t) :: outcome
-
-      outcome%status = contact_separated
-      outcome%cor = cor
-      outcome%max_force = 600.0_wp
-   end function outcome_of
-
-   !> What is within the tolerance passes, nothing else does
-   subroutine test_judge()
-      type(row_t) :: row
-      type(verdict_t) :: verdict
-      real(wp) :: infinite
-
-      infinite = ieee_value(infinite, ieee_positive_inf)
-      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), 1, [outcome_of(0.5005_wp)])
-      call check(verdict%passed, "a value within the tolerance passes")
-      call check_close([verdict%expected, verdict%found, verdict%deviation], &
-         [0.5_wp, 0.5005_wp, 0.0005_wp], rounding, "expected, found and their difference")
-      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), 1, [outcome_of(0.4995_wp)])
-      call check(verdict%passed, "a value below passes as well")
-      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), 1, [outcome_of(0.4985_wp)])
-      call check(.not. verdict%passed, "a value beyond the tolerance fails")
-      verdict = judge(row_of(0.6_wp, 1.0e-3_wp), 1, [outcome_of(0.5_wp)])
-      call check(.not. verdict%passed, "a wrong expected value fails")
-      verdict = judge(row_of(0.5_wp, 0.0_wp), 1, [outcome_of(0.5_wp)])
-      call check(verdict%passed, "no tolerance is one")
-
-      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, [outcome_of(nan())])
-      call check(.not. verdict%passed, "NaN fails")
-      verdict = judge(row_of(nan(), 1.0_wp), 1, [outcome_of(0.5_wp)])
-      call check(.not. verdict%passed, "NaN expected fails")
-      verdict = judge(row_of(0.5_wp, nan()), 1, [outcome_of(0.5_wp)])
-      call check(.not. verdict%passed, "NaN for a tolerance fails")
-      verdict = judge(row_of(0.5_wp, infinite), 1, [outcome_of(0.5_wp)])
-      call check(.not. verdict%passed, "an infinite tolerance fails")
-      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, [outcome_of(infinite)])
-      call check(.not. verdict%passed, "infinity fails")
-
-      row = row_of(6.0_wp, 1.0e-9_wp)
-      row%quantity = "max_force"
-      row%unit = 100.0_wp
-      verdict = judge(row, 1, [outcome_of(0.5_wp)])
-      call check(verdict%passed, "another quantity in another unit")
-      row%quantity = "no_such_quantity"
-      verdict = judge(row, 1, [outcome_of(0.5_wp)])
-      call check(.not. verdict%passed, "a quantity that does not exist fails")
-   end subroutine test_judge
-
-   !> The second outcome is what is expected
-   subroutine test_judge_of_pairs()
-      type(row_t) :: row
-      type(verdict_t) :: verdict
-
-      row = row_of(0.0_wp, 1.0e-3_wp)
-      row%twin = 2
-      verdict = judge(row, 1, [outcome_of(0.5_wp), outcome_of(0.5004_wp)])
-      call check(verdict%passed, "a pair that agrees passes")
-      call check_close(verdict%expected, 0.5004_wp, 0.0_wp, "the second one is expected")
-      verdict = judge(row, 1, [outcome_of(0.5_wp), outcome_of(0.502_wp)])
-      call check(.not. verdict%passed, "a pair that does not fails")
-   end subroutine test_judge_of_pairs
-
-   !> What is found and what is expected may be made of all outcomes
-   subroutine test_judge_of_measures()
-      type(row_t) :: row
-      type(verdict_t) :: verdict
-
-      row = row_of(0.0_wp, rounding)
-      row%measure => weighted_sum
-      row%expectation => twice_the_first
-      verdict = judge(row, 1, [outcome_of(0.4_wp), outcome_of(0.2_wp)])
-      call check(verdict%passed, "a measure against an expectation")
-      call check_close([verdict%found, verdict%expected], 0.8_wp, rounding, "both of them")
-   end subroutine test_judge_of_measures
-
-   !> No outcome, or one without separation
-   subroutine test_judge_of_nothing()
-      type(verdict_t) :: verdict
-      type(outcome_t) :: none(0), sticking
-
-      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, none)
-      call check(.not. verdict%passed, "a row without outcomes fails")
-      call check(ieee_is_nan(verdict%found), "nothing was found")
-      sticking = outcome_of(0.5_wp)
-      sticking%status = contact_sticking
-      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, [sticking])
-      call check(.not. verdict%passed, "a sphere that sticks has no restitution")
-   end subroutine test_judge_of_nothing
-
-   !> Every row can be read and can fail; what the rows find is tested from outside
-   subroutine test_laws()
-      integer, parameter :: name_width = 31
-      type(law_t) :: law
-      type(error_t), allocatable :: error
-      type(outcome_t) :: none(0)
-      type(verdict_t) :: verdict
-      integer :: i, j, k, method
-
-      do i = 1, law_count
-         call build_law(i, law, error)
-         call success(error, "a law is built")
-         call check(len(law%title) > 0 .and. len(law%source) > 0, "a law has a title and a source")
-         call check(law%count > 0, "a law has checks")
-         do j = 1, law%count
-            associate (this => law%checks(j))
-               call check(this%count > 0 .and. size(this%strikes) > 0, "a check has rows")
-               do k = 1, this%count
-                  associate (row => this%rows(k))
-                     call check(len_trim(row%name) <= name_width, "a name fits: "//row%name)
-                     call check(len_trim(row%reason) > 0, "a tolerance has a reason: "//row%name)
-                     do method = this%first, this%last
-                        verdict = judge(row, method, none)
-                        call check(verdict%tolerance > 0.0_wp .and. verdict%tolerance &
-                           <= max(1.0e-2_wp, 0.05_wp*abs(row%expected)), "it can fail: "//row%name)
-                     end do
-                  end associate
-               end do
-            end associate
-         end do
-      end do
-   end subroutine test_laws
-
-   !> A wrong number is found, an impact without an end too, and the others are not touched
-   subroutine test_wrong_law()
-      type(law_t) :: law
-      type(strike_t) :: rebound, glue
-      type(verdict_t), allocatable :: verdicts(:)
-
-      rebound = strike_t(elastic(15.0e6_wp))
-      glue = strike_t(sls(15.0e6_wp, 0.0_wp, 1.0e6_wp))
-      call law%begin("a law", "a source")
-      call law%add_check([rebound])
-      call law%add_row("right", 1.0_wp)
-      call law%add_row("wrong", 0.9_wp)
-      call law%add_check([glue], 'ive')
-      call law%add_row("glue", 0.0_wp, more=1.0_wp, reason="any number would do")
-      call law%add_row("glue again", 0.0_wp, more=1.0_wp)
-      call law%add_check([rebound, glue], 'ive')
-      call law%add_row("pair", more=1.0_wp, twin=2)
-      call law%add_check([strike_t(elastic(-1.0_wp))], 'ive')
-      call law%add_row("no material", 0.0_wp, more=1.0_wp)
-      call evaluate_law(law, verdicts)
-      call check(size(verdicts) == 8, "a verdict for each row and method")
-      call check(all(verdicts(:4)%method == ["ive   ", "ive   ", "direct", "direct"]), &
-         "all rows of a check by one method, then by the other")
-      call check(verdicts(1)%passed .and. verdicts(3)%passed, "right rows pass")
-      call check(.not. any(verdicts([2, 4])%passed), "a wrong number fails")
-      call check_close(verdicts(2)%deviation, 0.1_wp, 1.0e-8_wp, "by as much as it is wrong")
-      call check(.not. any(verdicts(5:)%passed), "impacts without an end, or none at all, fail")
-      call check(all(ieee_is_nan(verdicts(5:)%found)), "and leave no number")
-   end subroutine test_wrong_law
-
-   !> Asking for too many laws is a mistake of the program
-   subroutine test_law_that_does_not_exist()
-      type(law_t) :: law
-      type(error_t), allocatable :: error
-
-      call build_law(law_count + 1, law, error)
-      call check(allocated(error), "there is no such law")
-      if (allocated(error)) call check(error%code == error_internal, "an internal error")
-   end subroutine test_law_that_does_not_exist
 
    !> Values that converge with a known order
    subroutine test_richardson()
