@@ -38,8 +38,7 @@ module vcor_app_commands
       //"the table, and write files only if `--output` is given. A name is a column " &
       //"(`vcor help output`) or a swept parameter"), &
       entry_t("--threads N", "threads of a sweep; default: one per core"), &
-      entry_t("--resume", "continue an interrupted sweep, and delete what it has left half " &
-      //"written"), &
+      entry_t("--resume", "continue an interrupted sweep"), &
       entry_t("--quiet", "print nothing but the numbers of `--print`; warnings go to stderr"), &
       entry_t("", "A sweep that takes longer than a second keeps the finished points in " &
       //"STEM.part, a text file. When the sweep is killed (Ctrl-C, SIGTERM, SIGKILL) or " &
@@ -55,9 +54,8 @@ module vcor_app_commands
       //"`--print`, one line on stderr lists them. Numbers that no material has (a density of " &
       //"7.8 kg/m3) cause a warning."), &
       entry_t("", "Results of the same names are replaced. A file is written as NAME.tmp and " &
-      //"then renamed, so there is always the old file or the new one. A NAME.tmp that exists " &
-      //"belongs to another vcor at work, or to a killed one, and is not touched without " &
-      //"`--resume`."), &
+      //"then renamed, so there is always the old file or the new one. The next run replaces a " &
+      //"NAME.tmp that a killed one has left."), &
       entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &
       //"among ranks."), &
       entry_t("example", "vcor run examples/paper/sls.nml"), &

@@ -7,7 +7,6 @@ module vcor_app_files
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_t, error_usage, raise
    use vcor_io_csv, only : write_csv, write_rows
-   use vcor_io_file, only : raise_taken, remove_file, temporary_name
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_path, only : anything_at, directory_exists, folder_of, join_path, make_directory
    use vcor_io_restart, only : raise_unfinished
@@ -42,10 +41,6 @@ module vcor_app_files
    contains
       procedure :: name, written, directory
    end type files_t
-
-   !> What a run finds under the names of its files, apart from results, which it replaces: nothing,
-   !> an unfinished sweep, a file that is being written
-   integer, parameter :: state_free = 0, state_unfinished = 1, state_taken = 2
 
 contains
 
@@ -174,34 +169,8 @@ contains
       directory = self%path(:slash)
    end function directory
 
-   !> State of the files of a case
-   function state_of(files, path) result(state)
-      type(files_t), intent(in) :: files
-      !> The file that decides; empty if they are free
-      character(len=:), allocatable, intent(out) :: path
-      !> `state_free`, `state_unfinished` or `state_taken`
-      integer :: state
-
-      integer :: i
-
-      path = files%part
-      state = state_unfinished
-      if (path /= '') then
-         if (anything_at(path)) return
-      end if
-      state = state_taken
-      do i = 1, size(files%writes)
-         if (.not. files%writes(i)) cycle
-         path = temporary_name(files%name(i))
-         if (anything_at(path)) return
-      end do
-      state = state_free
-      path = ''
-   end function state_of
-
-   !> Make sure, before the work begins, that a run may write its files: their folder exists, and
-   !> they are those of no other run, at work or killed. With --resume, what a killed one has left
-   !> of them is deleted
+   !> Make sure, before the work begins, that a run may write its files: their folder exists, and no
+   !> sweep that writes them is unfinished, or it is to be resumed
    subroutine claim_files(files, resume, unfinished, error)
       type(files_t), intent(in) :: files
       logical, intent(in) :: resume
@@ -210,23 +179,14 @@ contains
       !> Error of code `error_file`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: path
-      integer :: i, state
-
       unfinished = .false.
       if (.not. any(files%writes)) return
-      state = state_of(files, path)
-      if (resume) then
-         unfinished = state == state_unfinished
-         do i = 1, size(files%writes)
-            if (files%writes(i)) call remove_file(temporary_name(files%name(i)))
-         end do
-      else if (state == state_unfinished) then
-         call raise_unfinished(path, error)
-      else if (state == state_taken) then
-         call raise_taken(path, error)
+      if (files%part /= '') unfinished = anything_at(files%part)
+      if (unfinished .and. .not. resume) then
+         call raise_unfinished(files%part, error)
+      else
+         call make_directory(files%directory(), error)
       end if
-      if (.not. allocated(error)) call make_directory(files%directory(), error)
    end subroutine claim_files
 
    !> Write the files of a case: a CSV file per table, then all tables as HDF5

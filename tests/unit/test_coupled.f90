@@ -438,8 +438,8 @@ contains
    !>     C = (alpha/s) [1 - (2/(5 pi)) (6 - 6 nu)^(1/2) y ln y + O(y)],   y = s H/c_s
    !>
    !> The term with ln y acts as a spring between sphere and plate, so the restitution differs from
-   !> its limit by x [A ln(1/x) + B] + O(x^2 ln(x)^2), x = H/(c_s T), with A from Zener's impact with
-   !> such a spring. Moduli that no material has make x fall from 0.016 to 0.002
+   !> its limit by x [A ln(1/x) + B] + O(x^2 ln(x)^2), x = H/(c_s T), with A from Zener's impact
+   !> with such a spring. Moduli that no material has make x fall from 0.016 to 0.002
    subroutine test_approach_to_thin()
       real(wp), parameter :: none(0) = 0.0_wp, nu = 0.5_wp, density = 1100.0_wp, mass = 0.0326726_wp
       real(wp), parameter :: modulus(2) = 1.5e18_wp*[1.0_wp, 2.0_wp**20], lambda = 0.5_wp

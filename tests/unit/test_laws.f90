@@ -195,7 +195,7 @@ contains
          "the weaker, the closer")
    end subroutine test_weak_maxwell
 
-   !> The next term of a weak Maxwell fluid: with t_c the contact time of Hertz and epsilon = t_c/tau
+   !> The next term of a weak Maxwell fluid, with t_c the contact time of Hertz, epsilon = t_c/tau
    !>
    !>     (1 - e)/epsilon = 5/9 - (3/5) (2/3.218)^(5/3) epsilon^(2/3) + O(epsilon)
    !>
@@ -227,8 +227,8 @@ contains
          -0.6_wp*(2.0_wp/duration)**(5.0_wp/3.0_wp), epsilon(2), "weak Maxwell fluid: next term")
    end subroutine test_maxwell_slope
 
-   !> A spring and a dashpot side by side, F = k (u + A u'), on a half space: the restitution depends
-   !> on b = (3/2) A/T alone (T. Schwager, T. Poeschel, Phys. Rev. E 78 (2008) 051304). Against
+   !> A spring and a dashpot side by side, F = k (u + A u'), on a half space: the restitution
+   !> depends on b = (3/2) A/T alone (T. Schwager, T. Poeschel, Phys. Rev. E 78 (2008) 051304). Against
    !> solutions in 50 digits (tests/reference/make_kelvin_voigt.py), against the series for weak
    !> dashpots, and against the Pade approximant of P. Mueller and T. Poeschel (Phys. Rev. E 84
    !> (2011) 021302), whose own errors are known
@@ -326,13 +326,14 @@ contains
          p = (1.5_wp*lambda(i))**2.5_wp*sqrt(zener%cor)
          ! what Y leaves out is below the last coefficient times p^7/(1 - p)
          call check_close(outcome%cor, zener%cor*polynomial(ends, p), &
-            2.0_wp*ive_accuracy + ends(6)*p**7/(1.0_wp - p), "Kelvin-Voigt contact from Zener's plate")
+            2.0_wp*ive_accuracy + ends(6)*p**7/(1.0_wp - p), &
+            "Kelvin-Voigt contact from Zener's plate")
       end do
    end subroutine test_kelvin_voigt_and_zener
 
    !> With exponent 1/2 the Mittag-Leffler function is CERF's exp(b^2 t) erfc(b sqrt(t)), with
-   !> exponent 1 it is exp(-t/tau), the standard linear solid. The models of each pair have different
-   !> code. An exponent next to 1 is used, which changes cor by less than its distance from 1
+   !> exponent 1 it is exp(-t/tau), the standard linear solid. The models of each pair have
+   !> different code. An exponent next to 1 is used, which changes cor by less than its distance from 1
    subroutine test_mittag_leffler()
       real(wp), parameter :: beta = 700.0_wp, next_to_one = 1.0_wp - 1.0e-12_wp
       type(mittag_leffler_t) :: material

@@ -1,9 +1,10 @@
 !> The catalogue: a single table of all groups and keys of a case
 !>
-!> Reading, checking, printing, sweeps and help follow from it. A new key needs a new row here and code
-!> that reads its value, see `vcor_case_reading`. The keys of `&material` come from the parameters of the models, a row for each key of each model; rows of one
-!> key have the same kind and default. Texts have fixed lengths, as arrays of constants require; a
-!> unit test fails if one is full.
+!> Reading, checking, printing, sweeps and help follow from it. A new key needs a new row here and
+!> code that reads its value, see `vcor_case_reading`. The keys of `&material` come from the
+!> parameters of the models, a row for each key of each model; rows of one key have the same kind
+!> and default. Texts have fixed lengths, as arrays of constants require; a unit test fails if one
+!> is full.
 module vcor_case_catalogue
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models

@@ -205,8 +205,8 @@ contains
       type(address_t), intent(in) :: swept(:)
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=*), parameter :: reason = 'with impact.temperature the material of the sphere ' &
-         //'or that of the plate needs a shift, neither has one'
+      character(len=*), parameter :: reason = 'with impact.temperature the material of the ' &
+         //'sphere or that of the plate needs a shift, neither has one'
       character(len=:), allocatable :: sphere, plate
       integer :: i
 

@@ -262,7 +262,8 @@ contains
       self%waves = waves(findloc(wave_names == text, .true., dim=1))
       self%has_body = has_body(case)
       if (text == 'none') then
-         call self%reading%leave(self%at%extent, "with plate.waves = 'none' the plate does not move")
+         call self%reading%leave(self%at%extent, &
+            "with plate.waves = 'none' the plate does not move")
          self%at%extent = address_t()
       end if
    end subroutine choose_plate
@@ -289,8 +290,8 @@ contains
       call case%get('solver', 'continue_after_separation', self%settings%ghost)
 
       reason = ''
-      if (method == 'coupled') reason = 'method coupled is linear theory and takes its own steps: ' &
-         //"this key is for method = 'direct'"
+      if (method == 'coupled') reason = 'method coupled is linear theory and takes its own ' &
+         //"steps: this key is for method = 'direct'"
       call read_if(reason, 'scheme volterra_order continue_after_separation')
       if (method == 'ive') reason = 'method ive takes its own steps, solver.time_step is for ' &
          //"method = 'direct'"

@@ -1,8 +1,8 @@
 !> The values of a case as an impact reads them
 !>
 !> A reading records each value that is taken from the case. A value from --set or another origin
-!> than the case file that was not read, or a sweep over one, is an error: unchanged numbers would be
-!> mistaken for an answer. Where a value is left out, the code that leaves it out may state why.
+!> than the case file that was not read, or a sweep over one, is an error: unchanged numbers would
+!> be mistaken for an answer. Where a value is left out, the code that leaves it out may state why.
 module vcor_case_reading
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t

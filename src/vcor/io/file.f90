@@ -1,14 +1,15 @@
 !> Reads text files as a whole, writes files that appear complete or not at all, and standard output
 !>
-!> A file is written under a temporary name, NAME.tmp, beside its final place. It is created
+!> A file is written under a temporary name, NAME.tmp, in the same folder. It is created
 !> exclusively, written, written through to the disk and renamed, with the permissions that the
 !> umask leaves; every status is checked. So the final name has the old file or the new one,
 !> whenever the process, the disk or the power fails.
 !>
-!>  - On failure the temporary file is removed. A killed process leaves it behind, and no other run
-!>    writes that file until it is deleted, by hand or by `--resume`: it may be of a run at work.
-!>  - A symbolic link of the final name is replaced by the file; its target is unchanged. One of the
-!>    temporary name is refused.
+!>  - On failure the temporary file is removed. A killed process leaves it behind, and the next one
+!>    removes it and begins its own. Of two processes that write the same name at once the one that
+!>    began first finds that its temporary file is gone and fails, and the other one succeeds.
+!>  - A symbolic link of the final name, or of the temporary one, is replaced by the file; its
+!>    target is unchanged.
 !>  - A directory, a device or a pipe of the final name, or a link to one, is refused: `/dev/stdout`
 !>    would otherwise become a file.
 !>  - Trailing blanks of a path are ignored, as by Fortran's `open`.
@@ -22,15 +23,15 @@ module vcor_io_file
    use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, &
       plain_file_exists, quoted_path, raise_system
    use vcor_io_posix, only : c_fallocate, c_fclose, c_fileno, c_fopen, c_fsync, c_isatty, &
-      c_rename, c_text, c_unlink, c_write, errno_exists, errno_interrupted, file_at, file_id_t, &
+      c_rename, c_text, c_unlink, c_write, errno_interrupted, file_at, file_id_t, &
       last_errno, open_file, same_file_id, standard_error, standard_output
-   use vcor_text, only : buffer_t, printable, shortened
+   use vcor_text, only : buffer_t, integer_text, printable, shortened
    implicit none
    private
 
    public :: read_text_file
    public :: output_file_t, create_file, put, reserve, commit, discard, write_file
-   public :: temporary_name, raise_taken, remove_file
+   public :: remove_file
    public :: write_all, write_stdout, write_terminal, stderr_is_terminal
 
    !> An output file: `create_file`, any number of `put`, then `commit` or `discard`. A procedure
@@ -40,6 +41,8 @@ module vcor_io_file
       character(len=:), allocatable :: temporary
       !> Final path
       character(len=:), allocatable :: path
+      !> Path by which a library opens this file, whatever becomes of its name
+      character(len=:), allocatable :: opened
       !> C stream, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
    end type output_file_t
@@ -104,38 +107,18 @@ contains
       call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
-      file%temporary = temporary_name(file%path)
-      file%stream = c_fopen(c_text(file%temporary), c_text('wx'))
+      file%temporary = file%path//'.tmp'
+      call remove_file(file%temporary)
+      file%stream = c_fopen(c_text(file%temporary), c_text('w+x'))
       reason = last_errno()
-      if (c_associated(file%stream)) return
-      if (reason == errno_exists) then
-         call raise_taken(file%temporary, error)
-      else
-         call raise_system(error, 'cannot write '//quoted_path(file%path), reason)
+      if (c_associated(file%stream)) then
+         file%opened = '/dev/fd/'//integer_text(int(c_fileno(file%stream)))
+         return
       end if
-      ! it belongs to another process
+      call raise_system(error, 'cannot write '//quoted_path(file%path), reason)
+      ! a folder of this name, or of another process
       deallocate (file%temporary)
    end subroutine create_file
-
-   !> Name of a file while it is written
-   pure function temporary_name(path) result(name)
-      !> Final path
-      character(len=*), intent(in) :: path
-      character(len=:), allocatable :: name
-
-      name = path//'.tmp'
-   end function temporary_name
-
-   !> Raise the error that a temporary file exists
-   subroutine raise_taken(temporary, error)
-      !> Its path
-      character(len=*), intent(in) :: temporary
-      !> Set
-      type(error_t), allocatable, intent(inout) :: error
-
-      call raise(error, error_file, quoted_path(temporary)//' exists: another vcor is writing ' &
-         //'it, or one was killed: delete it')
-   end subroutine raise_taken
 
    !> Write to a file
    subroutine put(file, text, error)
@@ -152,7 +135,7 @@ contains
       if (reason /= 0) call fail(file, reason, error)
    end subroutine put
 
-   !> Allocate disk space for HDF5, which writes to the file by its temporary path and may leave it
+   !> Allocate disk space for HDF5, which writes to the file by its path `opened` and may leave it
    !> shorter
    subroutine reserve(file, bytes, error)
       !> Open file; discarded on failure

@@ -170,13 +170,13 @@ contains
       call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status(13))
       call reserve(file, bytes, error)
       if (.not. allocated(error)) then
-         call h5fcreate_f(file%temporary, h5f_acc_trunc_f, writer%file, status(1), creation, access)
+         call h5fcreate_f(file%opened, h5f_acc_trunc_f, writer%file, status(1), creation, access)
          call h5fclose_f(writer%file, ignored)
          ! HDF5 has released the space
          call reserve(file, bytes, error)
       end if
       if (.not. allocated(error)) then
-         call h5fopen_f(file%temporary, h5f_acc_rdwr_f, writer%file, status(2), access)
+         call h5fopen_f(file%opened, h5f_acc_rdwr_f, writer%file, status(2), access)
          call note(writer, minval(status), 'create a file')
       end if
       call h5pclose_f(creation, ignored)

@@ -226,8 +226,7 @@ contains
          if (quantities(i)%labels /= '') bounds(:, i) = quantities(i)%first &
             + [0, size(labels_of(quantities(i))) - 1]
       end do
-      ! a point of the file is not pending; the last number is 0 or 1
-      bounds(1, size(quantities)) = point_pending + 1
+      ! the last number is 0 or 1
       bounds(:, size(quantities) + 1) = [0, 1]
    end function bounds_of
 

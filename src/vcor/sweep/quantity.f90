@@ -18,7 +18,8 @@ module vcor_sweep_quantity
    public :: summary_t, values_t, new_summary
    public :: status_t, statuses, status_name, point_pending, point_invalid, point_failed
 
-   !> Status of a point of a sweep beside the `contact_*` constants: not solved yet
+   !> Status of a point of a sweep in addition to the `contact_*` constants: not solved yet. It has
+   !> no name, since only finished sweeps are written
    integer, parameter :: point_pending = contact_unknown
    !> Its parameters describe no impact
    integer, parameter :: point_invalid = 3
@@ -37,8 +38,7 @@ module vcor_sweep_quantity
       character(len=96) :: advice
    end type status_t
 
-   !> All states of a contact or of a point of a sweep, in the order of their codes, except that the
-   !> smallest code is last
+   !> All states of a contact or of a solved point of a sweep, in the order of their codes
    type(status_t), parameter :: statuses(*) = [ &
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
@@ -52,9 +52,7 @@ module vcor_sweep_quantity
       status_t(point_failed, 'failed', 'in a sweep: the numerical solution failed', &
       'the message says why; the other method, by solver.method, may succeed'), &
       status_t(contact_resting, 'rests', 'its weight keeps the sphere in contact for good', &
-      'nothing: residual_indentation is that at rest, of a fluid the last one'), &
-      status_t(point_pending, 'pending', 'in a sweep: the point is not solved yet', &
-      'the same command with --resume')]
+      'nothing: residual_indentation is that at rest, of a fluid the last one')]
 
    !> A column of a file
    type :: quantity_t
@@ -209,8 +207,7 @@ contains
          is_whole=.true.)
       ! the status must be the last column
       call list%add('status', '', '', 'how the contact ended', real(outcome%status, wp), &
-         labels=[statuses(size(statuses))%name, statuses(:size(statuses) - 1)%name], &
-         first=point_pending)
+         labels=statuses%name, first=contact_separated)
    end subroutine list_columns
 
    !> Add a column: of numbers, of whole numbers, or of texts
@@ -329,7 +326,7 @@ contains
    pure function status_name(status) result(name)
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation, sticks, invalid, failed, rests or pending
+      !> separated, no_separation, sticks, invalid, failed or rests
       character(len=13) :: name
 
       integer :: i
