@@ -43,6 +43,7 @@ module vcor_impact_face
       procedure :: per_shear_speed
       procedure :: poisson_ratio
       procedure :: response
+      procedure :: half_space_response
    end type face_t
 
 contains
@@ -184,5 +185,18 @@ contains
          excess = static_response(self%base, self%poisson_ratio(), k*self%thickness)
       end if
    end subroutine response
+
+   !> L - 1 at many wavenumbers of a half space of the plate's material
+   pure subroutine half_space_response(self, k, p, excess)
+      class(face_t), intent(in) :: self
+      !> Wavenumbers [1/m], > 0
+      real(wp), intent(in) :: k(:)
+      !> Laplace variable over the speed of shear waves [1/m], of `per_shear_speed`
+      complex(wp), intent(in) :: p
+      !> L - 1 [-], same shape
+      complex(wp), intent(out) :: excess(:)
+
+      excess = wave_response(base_half_space, self%poisson_ratio(), 0.0_wp, k, p)
+   end subroutine half_space_response
 
 end module vcor_impact_face

@@ -17,7 +17,7 @@ module vcor_solver_coupled
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
    use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
       march
-   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
+   use vcor_solver_type, only : as_text, default_accuracy, solver_settings_t, solver_t
    implicit none
    private
 
@@ -54,6 +54,8 @@ module vcor_solver_coupled
       real(wp) :: cor = 0.0_wp, contact_time = 0.0_wp
       real(wp) :: max_force = 0.0_wp, time_of_max_force = 0.0_wp
       real(wp) :: depth = 0.0_wp, time_of_depth = 0.0_wp
+      !> Largest forces of both, not extrapolated [N]
+      real(wp) :: coarse_force = 0.0_wp, fine_force = 0.0_wp
    end type pair_t
 
    !> What is known about the duration and the size of a contact
@@ -84,11 +86,14 @@ module vcor_solver_coupled
    !> Steps of all marches of an impact, which a contact whose end is hard to find may take
    integer, parameter :: most_work = 12*most_steps
    !> Parts of a largest value down to which a parabola is fitted: of the force, in which springs
-   !> that come into contact one by one make steps, and where a sine still differs by 1e-5 from a
-   !> parabola, and of the displacement
+   !> that come into contact one by one make steps, and of the displacement
    real(wp), parameter :: noisy = 0.97_wp, smooth = 0.999_wp
+   !> Relative error of the top of the parabola fitted to a sine down to `noisy`
+   real(wp), parameter :: parabola = 1.3e-5_wp
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp
+   !> Steps to the time scale of a contact that resolve it
+   real(wp), parameter :: resolved = 8.0_wp
    !> Ratios to which window and radius are rounded up, and their margin
    real(wp), parameter :: window_ratio = 2.0_wp**0.125_wp, radius_ratio = 2.0_wp**0.25_wp
    real(wp), parameter :: margin = 1.04_wp
@@ -113,6 +118,8 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! for contact time and largest force, which nothing refines
+      real(wp), parameter :: careful = 2.0_wp
       ! relative error of the largest force from which it is computed again, if it comes early
       real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
       type(pair_t) :: before, now
@@ -149,12 +156,16 @@ contains
             cycle
          end if
          if (level > 0) then
-            cor_error = distance(before, now, impact)
+            cor_error = distance(before%coarse%cor(impact), before%fine%cor(impact), &
+               now%coarse%cor(impact), now%fine%cor(impact))
             if (cor_error <= self%settings%accuracy) exit
-            if (cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
-               call raise(error, error_numerical, 'the estimated error of cor_sphere is ' &
-                  //as_text(cor_error)//' with '//steps_text(level)//' steps and will not fall ' &
-                  //'to '//as_text(self%settings%accuracy)//': give a larger solver.accuracy')
+            ! steps that do not resolve the contact tell nothing
+            if (level == finest .or. now%coarse%dt*resolved <= impact%time_scale() .and. &
+                cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
+               call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
+                  //'solver.accuracy, '//as_text(self%settings%accuracy)//', by ' &
+                  //as_text(cor_error - self%settings%accuracy)//' with '//steps_text(level) &
+                  //' steps, and more are not worth it: give a larger one')
                return
             end if
          end if
@@ -163,10 +174,14 @@ contains
       end do
       call record(now, impact, trajectory)
       trajectory%accuracy = self%settings%accuracy
-      trajectory%cor_sphere_error = cor_error
-      trajectory%cor_error = cor_error
-      trajectory%contact_time_error = abs(now%contact_time - before%contact_time)
-      trajectory%max_force_error = abs(now%max_force - before%max_force)
+      trajectory%contact_time_error = distance(before%coarse%contact_time, &
+         before%fine%contact_time, now%coarse%contact_time, now%fine%contact_time)*careful &
+         + now%fine%time_error
+      trajectory%cor_sphere_error = cor_error &
+         + impact%gravity*now%fine%time_error/impact%velocity
+      trajectory%cor_error = trajectory%cor_sphere_error
+      trajectory%max_force_error = distance(before%coarse_force, before%fine_force, &
+         now%coarse_force, now%fine_force)*careful + parabola*now%max_force
       if (trajectory%max_force_error > sharp*now%max_force .and. now%time_of_max_force &
           < early*now%contact_time) call resolve_peak(self, impact, search%radius, trajectory, &
          error)
@@ -174,20 +189,25 @@ contains
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
 
-   !> Estimated error of the extrapolated coefficient of restitution: what the steps change, or what
-   !> springs and hats change at equal steps, whichever is larger, so that they do not cancel by
-   !> chance
-   pure function distance(before, now, impact)
-      !> Results of the level before
-      type(pair_t), intent(in) :: before
-      !> Results of this level, whose longer steps are the shorter ones of the level before
-      type(pair_t), intent(in) :: now
-      type(impact_t), intent(in) :: impact
-      !> Error [-]
+   !> Estimated error of an extrapolated result, the largest of three so that they do not cancel by
+   !> chance: what the level changes, what springs and hats change at equal steps, and what is left
+   !> if the steps have less effect than of second order
+   elemental function distance(long, middle, equal, short)
+      !> Results of the level before with its longer and its shorter steps
+      real(wp), intent(in) :: long, middle
+      !> Results of this level, with steps equal to those shorter ones and with half of them
+      real(wp), intent(in) :: equal, short
       real(wp) :: distance
 
-      distance = max(abs(now%cor - before%cor), &
-         abs(now%coarse%cor(impact) - before%fine%cor(impact)))
+      real(wp) :: ratio
+
+      distance = max(abs(limit(equal, short) - limit(long, middle)), abs(equal - middle))
+      if (.not. abs(middle - long) > 2.0_wp*abs(short - equal)) then
+         distance = max(distance, 2.0_wp/3.0_wp*abs(short - equal))
+      else
+         ratio = (middle - long)/(short - equal)
+         distance = max(distance, abs(short - equal)*(1.0_wp/(ratio - 1.0_wp) - 1.0_wp/3.0_wp))
+      end if
    end function distance
 
    !> Mesh of a level: twice the steps of the level before, with more springs and hats. The response
@@ -234,8 +254,6 @@ contains
       type(course_t), intent(out) :: course
       type(error_t), allocatable, intent(out) :: error
 
-      ! steps to the time scale of a contact
-      real(wp), parameter :: resolved = 8.0_wp
       ! growth of a window or row that is too short, and how much longer than expected they begin
       real(wp), parameter :: growth = 2.0_wp**0.5_wp, spare = 1.25_wp
       type(course_t) :: lasting
@@ -372,6 +390,8 @@ contains
          pair%cor = limit(a%cor(impact), b%cor(impact))
          one = peak(a%force(0:a%steps), a%dt, noisy)
          two = peak(b%force(0:b%steps), b%dt, noisy)
+         pair%coarse_force = one%value
+         pair%fine_force = two%value
          pair%max_force = limit(one%value, two%value)
          pair%time_of_max_force = limit(one%time, two%time)
          one = peak(a%z(0:a%steps), a%dt, smooth)
@@ -412,7 +432,7 @@ contains
          force(level) = limit(top(1)%value, top(2)%value)
       end do
       trajectory%max_force = force(1)
-      trajectory%max_force_error = abs(force(1) - force(0))
+      trajectory%max_force_error = abs(force(1) - force(0)) + parabola*force(1)
       trajectory%time_of_max_force = limit(top(1)%time, top(2)%time)
    end subroutine resolve_peak
 
@@ -577,15 +597,5 @@ contains
 
       write (text, '(i4)') first_steps*2**level
    end function steps_text
-
-   !> A number as text of fixed length, for threads
-   pure function as_text(number) result(text)
-      !> The number, > 0
-      real(wp), intent(in) :: number
-      !> Text such as 1.0E-08
-      character(len=7) :: text
-
-      write (text, '(es7.1)') number
-   end function as_text
 
 end module vcor_solver_coupled

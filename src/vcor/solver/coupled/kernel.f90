@@ -37,6 +37,11 @@ module vcor_solver_coupled_kernel
       type(row_t) :: row
       !> Weights of the springs, shape (0:steps-1) [m/N per m]
       real(wp), allocatable :: local(:)
+      !> Weights of the waves of an elastic half space, which pass, from the hats to the axis [m/N],
+      !> that of lag n from hat j at j + hats (steps - 1 - n); unallocated without waves
+      real(wp), allocatable :: passing(:)
+      !> Speed of its shear waves [m/s]; 0 without waves
+      real(wp) :: speed = 0.0_wp
       !> Whether the springs remember: more than their first weight counts
       logical :: remembers = .false.
       !> Whether hats act on each other
@@ -54,6 +59,7 @@ module vcor_solver_coupled_kernel
    contains
       procedure :: is_for
       procedure :: numbers
+      procedure, private :: rate
    end type kernel_t
 
 contains
@@ -81,12 +87,21 @@ contains
          .and. all(abs(self%p - face%per_shear_speed(s)) <= 0.0_wp)
    end function is_for
 
+   !> Laplace variable of a step, 1/dt
+   pure function rate(self)
+      class(kernel_t), intent(in) :: self
+      !> The variable [1/s]
+      real(wp) :: rate
+
+      rate = real(self%mesh%steps, wp)/self%mesh%window
+   end function rate
+
    !> Size of the kernel in real numbers
    pure function numbers(self)
       class(kernel_t), intent(in) :: self
       integer :: numbers
 
-      numbers = self%mesh%steps*(self%mesh%hats**2 + 8) + 8*self%row%springs
+      numbers = self%mesh%steps*(self%mesh%hats*(self%mesh%hats + 1) + 8) + 8*self%row%springs
    end function numbers
 
    !> Build the kernel of a face on a mesh
@@ -134,6 +149,7 @@ contains
 
       complex(wp), allocatable :: excess(:)
       real(wp), allocatable :: k(:), weight(:), dual(:, :), pairs(:, :), parts(:, :), found(:, :)
+      complex(wp), allocatable :: p(:)
       complex(wp) :: value
       integer :: hats, steps, i, j, l, n
 
@@ -142,7 +158,12 @@ contains
       allocate (self%now(hats, hats), source=0.0_wp)
       allocate (found(hats*(hats + 1)/2, 2*size(s)), source=0.0_wp)
       if (face%has_response()) then
-         call wavenumbers(face, self%p, self%mesh%radius, self%row%node(2), k, weight)
+         p = self%p
+         if (face%has_waves) then
+            self%speed = self%rate()/real(face%per_shear_speed(cmplx(self%rate(), kind=wp)), wp)
+            p = [p, s/self%speed]
+         end if
+         call wavenumbers(face, p, self%mesh%radius, self%row%node(2), k, weight)
          allocate (dual(hats, size(k)), excess(size(k)), pairs(size(found, 1), size(k)), &
             parts(size(k), 2*size(s)))
          call transforms(self%row%node, k, dual, error)
@@ -168,6 +189,7 @@ contains
                found(n, 2*l + 2) = aimag(value)
             end do
          end do
+         if (face%has_waves) call add_passing(self, face, k, weight, dual, s/self%speed, transform)
       end if
       do l = 0, size(s) - 1
          value = face%drift(s(l))
@@ -191,6 +213,36 @@ contains
          end do
       end do
    end subroutine add_response
+
+   !> Weights of the waves that pass: of an elastic half space as stiff as the plate in a step
+   subroutine add_passing(self, face, k, weight, dual, p, transform)
+      type(kernel_t), intent(inout) :: self
+      type(face_t), intent(in) :: face
+      !> Wavenumbers [1/m] and their weights [1/m]
+      real(wp), intent(in) :: k(:), weight(:)
+      !> Transforms of the functions dual to the hats, shape (hats, size(k))
+      real(wp), intent(in) :: dual(:, :)
+      !> Laplace variables over the speed of its shear waves [1/m]
+      complex(wp), intent(in) :: p(:)
+      !> Matrix of the inverse transform, of `weights`
+      real(wp), intent(in) :: transform(:, 0:)
+
+      complex(wp) :: excess(size(k))
+      real(wp) :: parts(size(k), 2*size(p)), share(size(k)), axis(size(dual, 1), self%mesh%steps)
+      integer :: l
+
+      do l = 1, size(p)
+         call face%half_space_response(k, p(l), excess)
+         parts(:, 2*l - 1) = real(excess, wp)
+         parts(:, 2*l) = aimag(excess)
+      end do
+      share = dual(1, :)*weight/(pi*real(face%plate_modulus(cmplx(self%rate(), kind=wp)), wp))
+      do l = 1, size(parts, 2)
+         parts(:, l) = parts(:, l)*share
+      end do
+      axis = matmul(matmul(dual, parts), transform)
+      self%passing = reshape(axis(:, self%mesh%steps:1:-1), [size(axis)])
+   end subroutine add_passing
 
    !> Nodes and weights of the quadrature in k: panels of Gauss nodes, short where the response of
    !> any frequency has a pole nearby, where a layer resonates, and against the waves cos(ka)
