@@ -208,15 +208,7 @@ def alumina():
     ):
         one["plate.waves"] = waves
         e = one.sweep({"plate.half_thickness": thick * 5e-4}, ["cor_sphere", "validity"])
-        curve(
-            right,
-            thick,
-            e.cor_sphere,
-            color,
-            line,
-            label=name,
-            marker="o" if waves == "body" else "",
-        )
+        curve(right, thick, e.cor_sphere, color, line, label=name)
         if waves == "body":
             reaches = np.interp(point.cor_sphere, e.cor_sphere[:4], thick[:4])
         else:
@@ -478,10 +470,10 @@ def contact_times():
     lam = np.interp(thick * 5e-4, half, thin.inelasticity)
     error = read / thick - 1
     curve(right, thin.inelasticity, thin.cor_sphere, "C2", "-.", label="e, thin plate")
-    curve(right, lam, body.cor_sphere, "C1", label="e, body", marker="o")
+    curve(right, lam, body.cor_sphere, "C1", label="e, body")
     second = right.twinx()
-    curve(second, lam, 100 * error, "C3", "--", marker="s")
-    curve(right, [], [], "C3", "--", label="error of the thickness", marker="s")
+    curve(second, lam, 100 * error, "C3", "--")
+    curve(right, [], [], "C3", "--", label="error of the thickness")
     limit = 100 * claim.largest_relative_error
     second.fill_between(
         [0.05, claim.largest_inelasticity], -limit, limit, color="0.88", lw=0, zorder=0

@@ -700,3 +700,46 @@ def test_help(capsys):
     assert caught.value.code == 0 and page.startswith("usage: vcor plot ")
     for word in ("--kind", "--log", "--range", "--levels", "--no-hatch", "--script", *KINDS):
         assert word in page
+
+
+def test_figures_of_cases_without_a_file():
+    """The same curves as from a file; a sweep is drawn as such."""
+    case = vcor.read(ROOT / "examples/paper/sls.nml")
+    one, other = case.plot("history"), vcor.plot.history(case, width=6.0)
+    assert texts(one) == texts(other) and len(one.axes[0].lines) > 3
+    assert other.get_size_inches()[0] == pytest.approx(6.0 / 2.54)
+    assert case.plot("loop", xlabel="approach [mm]").axes[0].get_xlabel() == "approach [mm]"
+    case["output.history"] = False
+    sweep = vcor.Case(case.text() + "\n&sweep parameter = 'impact.velocity', values = 1.0, 2.0 /")
+    assert sweep.plot().axes[0].get_xlabel() == "impact velocity [m/s]"
+    assert "plot" in dir(vcor) and "read" in dir(vcor) and "np" not in dir(vcor)
+
+
+def test_labels_of_axes_and_points(tmp_path):
+    """A text for each file of points, and for an axis that all panels have."""
+    sweep = vcor.read(ROOT / "examples/sweeps/sls_velocity.nml").run()
+    points = tmp_path / "drops.csv"
+    points.write_text("velocity [m/s], cor\n2.0, 0.4\n5.0, 0.42\n")
+    made = vcor.plot.figure([sweep, points], labels="by film", xlabel="speed", ylabel="e")
+    assert "by film" in [text.get_text() for text in made.legends[0].get_texts()]
+    assert (made.axes[0].get_xlabel(), made.axes[0].get_ylabel()) == ("speed", "e")
+    curve = made.axes[0].lines[0]
+    assert curve.get_marker() in ("", "None", None)
+    with pytest.raises(vcor.UsageError, match="1 --label for 0"):
+        vcor.plot.figure([sweep], labels="by film")
+    with pytest.raises(vcor.UsageError, match="the panels have several"):
+        vcor.plot.figure([sweep], quantities=["cor", "max_force"], ylabel="e")
+
+
+def test_moduli_at_several_temperatures_are_refused(results):
+    data = ROOT / "examples/identification/dma.csv"
+    with pytest.raises(vcor.InputError, match="13 temperatures.*vcor master"):
+        vcor.plot.figure([results / "sls_material.h5", data])
+
+
+def test_every_level_inside_the_frame_has_its_number():
+    made = vcor.read(ROOT / "examples/sweeps/velocity_and_radius.nml").plot(
+        quantities=["wave_energy"], log="z"
+    )
+    shown = [text.get_text() for text in made.axes[0].texts if text.get_visible()]
+    assert len(shown) >= 5 and len(set(shown)) == len(shown)

@@ -73,7 +73,13 @@ _LATER = {
 }
 
 
+def __dir__() -> list[str]:
+    return [*__all__, "plot"]
+
+
 def __getattr__(name: str) -> Any:
+    if name == "plot":
+        return importlib.import_module("vcor.plot")
     if name not in _LATER:
         raise AttributeError(f"module 'vcor' has no attribute '{name}'")
     found = getattr(importlib.import_module(f"vcor.{_LATER[name]}"), name)

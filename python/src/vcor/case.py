@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import math
 import os
 import re
@@ -35,6 +36,7 @@ from ._text import write
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -371,6 +373,20 @@ class Case:
         }
         time_axis = variables.pop("time")
         return _dataset(variables, {"time": time_axis}, self._attrs({}))
+
+    def plot(self, kind: str | None = None, **options: Any) -> Figure:
+        """Solve the case and draw it; needs Matplotlib.
+
+        Parameters
+        ----------
+        kind
+            "history" or "loop", of a case with &sweep groups "sweep" or "map"; None: the first that
+            fits.
+        options
+            Those of `vcor.plot.figure`.
+        """
+        made: Figure = importlib.import_module("vcor.plot").figure(self, kind=kind, **options)
+        return made
 
     def verify(self) -> xr.Dataset:
         """Solve the case by all methods and compare them, as `vcor verify CASE` does.

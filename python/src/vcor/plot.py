@@ -33,7 +33,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 from . import _command, _text
 from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, printable, whole
-from .case import listed
+from .case import Case, listed
 from .materials.data import (
     Columns,
     Units,
@@ -66,8 +66,8 @@ _WORDS = {
 #: Hatching by what the column validity says, and its text
 _HATCHES = {"outside": ("/////", "outside of the model's validity"),
             "caution": ("//", "with caution: off by per cents")}  # fmt: skip
-#: Letters of a label that a side of a panel has room for
-_ROOM = 38
+#: Letters of a label for an inch, and the width of a panel that its numbers take [in]
+_LETTERS, _BESIDE = 15.0, 0.75
 #: Colours of a map, light enough for lines and hatching over them
 _SHADES = LinearSegmentedColormap.from_list("", mpl.colormaps["Blues"](np.linspace(0.0, 0.7, 64)))
 #: Colour of the points of a map without a result: grey, which is no level
@@ -82,6 +82,8 @@ class _Wishes:
     results: list[Result]
     #: Whether the user gave the texts of the results
     given: bool
+    #: Labels of the axes x and y that the user gave
+    names: dict[str, str]
     data: list[pd.DataFrame]
     quantities: Sequence[str]
     log: str | None
@@ -97,6 +99,9 @@ def figure(
     kind: str | None = None,
     quantities: Sequence[str] | None = None,
     legends: Sequence[str] = (),
+    labels: Sequence[str] = (),
+    xlabel: str | None = None,
+    ylabel: str | None = None,
     log: str | None = None,
     ranges: dict[str, _Range] | None = None,
     levels: int | Sequence[float] = 8,
@@ -110,14 +115,19 @@ def figure(
     Parameters
     ----------
     files
-        Files of results (.h5) or materials (.nml) or sweeps of `Case.run`, all of one kind, and
-        files of measured points (any other ending); one or several.
+        Files of results (.h5) or materials (.nml), cases, which are solved, or sweeps of
+        `Case.run`, all of one kind, and files of measured points (any other ending); one or
+        several.
     kind
         One of `KINDS`; None: what the first file is for.
     quantities
         Columns of the summary for sweeps and maps, a panel each; None: cor.
     legends
         A text for each file of results; none: titles, or what differs in the cases.
+    labels
+        A text for each file of measured points; none: names of the files.
+    xlabel, ylabel
+        Label of an axis, where all panels have the same; None: the quantity with its unit.
     log
         Axes that are logarithmic, letters among x, y and z (levels of a map), "" for none; None:
         those whose values are in equal ratios, and moduli.
@@ -138,12 +148,12 @@ def figure(
         The figure, to be changed or saved.
     """
     # a Dataset and a name are iterable, too
-    files = [files] if isinstance(files, (xr.Dataset, str)) else listed(files)
+    files = [files] if isinstance(files, (xr.Dataset, str, Case)) else listed(files)
     results = [Result(source) for source in files if is_result(source)]
     data = [
         read_data(name, columns, units, whole=False)
         for name in files
-        if not (isinstance(name, xr.Dataset) or is_result(name))
+        if not (isinstance(name, (xr.Dataset, Case)) or is_result(name))
     ]
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
@@ -155,6 +165,12 @@ def figure(
             f"found {len(legends)} --legend for {len(results)} file(s) of results, expected one "
             "for each"
         )
+    labels = listed(labels)
+    if labels and len(labels) != len(data):
+        raise UsageError(f"found {len(labels)} --label for {len(data)} file(s) of measured points, "
+                         "expected one for each")  # fmt: skip
+    for one, text in zip(data, labels, strict=False):
+        one.attrs["label"] = text
     kind = kind or results[0].kind()
     if kind not in KINDS:
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
@@ -173,7 +189,10 @@ def figure(
     for result, text in zip(results, legends or legends_of(results), strict=True):
         result.text = printable(str(text))
     names = [plain_name(name) for name in listed(quantities or "cor")]
-    wishes = _Wishes(results, bool(legends), data, names, log, ranges or {}, levels, hatch, width)
+    own = {axis: text for axis, text in (("x", xlabel), ("y", ylabel)) if text is not None}
+    wishes = _Wishes(
+        results, bool(legends), own, data, names, log, ranges or {}, levels, hatch, width
+    )
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
         made = draw(wishes)
@@ -187,6 +206,11 @@ def figure(
                 f"axis{': ' * bool(results[0].axes)}{', '.join(results[0].axes)}"
             )
     return made
+
+
+def history(case: Case, **options: Any) -> Figure:
+    """Figure of the impact of a case over time; options are those of `figure`."""
+    return figure(case, kind="history", **options)
 
 
 # ------------------------------------------------------------------------------- kinds
@@ -264,7 +288,7 @@ def _history(wishes: _Wishes) -> Figure:
             time, values = factor * course["time"], course[name] / size
             contact, ghost = course["contact"], course["ghost"]
             _curve(axis, number, time[contact], values[contact], shown, linestyle="-")
-            _curve(axis, number, time[ghost], values[ghost], None, linestyle="--", marker="")
+            _curve(axis, number, time[ghost], values[ghost], None, linestyle="--")
             if ended:
                 _curve(axis, number, [end], [np.interp(end, time, values)], None, linestyle="")
             if i == 0:
@@ -307,7 +331,7 @@ def _loop(wishes: _Wishes) -> Figure:
         parts = [result.text] if len(courses) > 1 or wishes.given else []
         contact = course["contact"]
         _curve(axis, i, fx * course["indentation"][contact], fy * course["force"][contact],
-               ", ".join([*parts, words] if np.isfinite(lost) else parts), marker="")  # fmt: skip
+               ", ".join([*parts, words] if np.isfinite(lost) else parts))  # fmt: skip
     _points(axis, wishes.data, "indentation", "force", fx, fy)
     axis.set_xlabel(_with_unit("indentation", x_unit))
     axis.set_ylabel(_with_unit("contact force", y_unit))
@@ -318,6 +342,13 @@ def _loop(wishes: _Wishes) -> Figure:
 
 def _moduli(wishes: _Wishes) -> Figure:
     """Relaxation modulus over time, storage and loss modulus and loss tangent over frequency."""
+    for one in wishes.data:
+        count = one["temperature"].nunique() if "temperature" in one else 0
+        if count > 1:
+            raise InputError(
+                f"{one.attrs['path']}: found moduli at {count} temperatures, expected one, or the "
+                "master curve of vcor master"
+            )
     columns = ("relaxation_modulus", "storage_modulus", "loss_modulus", "loss_tangent")
     curves = []
     several = len(wishes.results) > 1
@@ -354,7 +385,7 @@ def _moduli(wishes: _Wishes) -> Figure:
             one, over = (both[0], "time") if k == 0 else (both[1], "frequency")
             fy = 1.0 if name == "loss_tangent" else factor
             values = fy * one[name].where(one[name] > 0)
-            _curve(axis, number, one[over], values, None if single and k == 0 else label, marker="")
+            _curve(axis, number, one[over], values, None if single and k == 0 else label)
             mark = ends[k > 0]
             if np.isfinite(mark) and not (single and k > 1) and (several or i == 0):
                 color = axis.lines[-1].get_color() if several else "0.5"
@@ -484,13 +515,10 @@ def _map(wishes: _Wishes) -> Figure:
                 setter("log")
         if z.max() > z.min():
             drawn = axis.contour(fx * x, fy * y, z, levels=levels, colors="0.1")
-            for number in axis.clabel(drawn, fontsize=7, inline=False, fmt=_number, colors="k"):
+            places = _label_places(axis, drawn)
+            for number in axis.clabel(drawn, fontsize=7, inline=False, fmt=_number, colors="k",
+                                      manual=places):  # fmt: skip
                 number.set_path_effects([withStroke(linewidth=1.6, foreground="w")])
-                u, v = axis.transAxes.inverted().transform(
-                    axis.transData.transform(number.get_position())
-                )
-                # no label over the frame
-                number.set_visible(0.08 < u < 0.92 and 0.05 < v < 0.95)
         bar = made.colorbar(filled, ax=axis, label=z_label, ticks=levels)
         bar.ax.minorticks_off()
         bar.ax.yaxis.set_major_formatter(lambda value, _: _number(value))
@@ -498,7 +526,7 @@ def _map(wishes: _Wishes) -> Figure:
             if not (wishes.hatch and "validity" in ordered and (ordered.validity == level).any()):
                 continue
             found = (ordered.validity == level).values.T.astype(float)
-            with mpl.rc_context({"hatch.color": "0.25"}):
+            with mpl.rc_context({"hatch.color": "0.3", "hatch.linewidth": 0.35}):
                 axis.contourf(fx * x, fy * y, found, levels=[0.5, 1.5], colors="none",
                               hatches=[lines])  # fmt: skip
             if found.min() < 1:
@@ -514,6 +542,31 @@ def _map(wishes: _Wishes) -> Figure:
                          label=_stem(one), **options)  # fmt: skip
         axis.set(xlabel=x_label, ylabel=y_label)
     return made
+
+
+def _label_places(axis: Axes, drawn: Any) -> list[tuple[float, float]]:
+    """A place on each level of a map for its number.
+
+    It is inside the frame, next to the diagonal that leaves the fewest levels out, and clear of
+    the others.
+    """
+    back, across = axis.transAxes.inverted(), axis.transData
+    best: list[tuple[float, float]] = []
+    for sign in (1.0, -1.0):
+        found: list[tuple[float, float]] = []
+        taken: list[Floats] = []
+        for path in drawn.get_paths():
+            if not len(path.vertices):
+                continue
+            at = back.transform(across.transform(path.vertices))
+            inside = np.all((at > 0.08) & (at < 0.92), axis=1)
+            off = np.where(inside, np.abs(sign * (at[:, 0] - 0.5) - (at[:, 1] - 0.5)), np.inf)
+            k = int(np.argmin(off))
+            if inside[k] and all(np.hypot(*(at[k] - other)) > 0.08 for other in taken):
+                taken.append(at[k])
+                found.append((float(path.vertices[k, 0]), float(path.vertices[k, 1])))
+        best = max(best, found, key=len)
+    return best
 
 
 def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
@@ -594,11 +647,13 @@ def _legend(made: Figure) -> None:
 
 
 def _curve(axis: Axes, number: int, x: Any, y: Any, text: str | None, **options: Any) -> None:
-    """A curve in a style of its own, by its number; with a marker every so often."""
+    """A curve in a style of its own, by its number; values that stand alone are marked."""
     settings = {**list(mpl.rcParams["axes.prop_cycle"])[number % MOST], "label": text, **options}
-    if "marker" not in options and len(x) > 10:
-        settings["markevery"] = (0.02 * (1 + number % 3), 0.1)
-    axis.plot(x, y, **settings)
+    known = np.concatenate([[False], np.isfinite(np.asarray(y, float)), [False]])
+    alone = np.flatnonzero(known[1:-1] & ~known[:-2] & ~known[2:])
+    if not len(alone):
+        settings["marker"] = ""
+    axis.plot(x, y, **settings, markevery=[int(i) for i in alone])
 
 
 def _points(axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy: float) -> None:
@@ -611,7 +666,7 @@ def _points(axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy:
             fx * at, fy * values,
             None if sigma is None else fy * sigma, None if at_sigma is None else fx * at_sigma,
             fmt="osD^v"[number % 5], color="0.3", mfc="white", capsize=1.5, elinewidth=0.7, ls="",
-            label=_stem(one), zorder=1.8,
+            label=_stem(one), zorder=3,
         )  # fmt: skip
 
 
@@ -627,7 +682,8 @@ def _find(data: pd.DataFrame, name: str) -> tuple[Floats | None, Floats | None]:
 
 def _stem(data: pd.DataFrame) -> str:
     """Measured data in the legend."""
-    return printable(Path(data.attrs["path"]).stem.replace("_", " "))
+    stem = Path(data.attrs["path"]).stem.replace("_", " ")
+    return printable(str(data.attrs.get("label", stem)))
 
 
 def _scale(unit: str, *values: Any) -> tuple[float, str]:
@@ -679,11 +735,18 @@ def _is_geometric(values: Floats) -> bool:
 
 
 def _adjust(made: Figure, wishes: _Wishes) -> None:
-    """What the user wants otherwise: logarithmic axes and ranges; nobody's text is a formula."""
+    """What the user wants otherwise: labels, logarithmic axes and ranges; no text is a formula."""
+    _name_axes(made, wishes.names)
     for axis in made.axes:
         texts = [axis.title, axis.xaxis.label, axis.yaxis.label, *axis.texts]
         for text in texts:
             text.set_parse_math(False)
+        place = axis.get_subplotspec()
+        columns = 1 if place is None else place.get_gridspec().ncols
+        rooms = (made.get_size_inches()[0] / columns - _BESIDE, HEIGHT / 2.54)
+        for which, inches in zip((axis.xaxis, axis.yaxis), rooms, strict=True):
+            lines = textwrap.wrap(which.label.get_text(), max(12, round(_LETTERS * inches)))
+            which.label.set_text("\n".join(lines))
         if axis.get_label() == "<colorbar>":
             continue
         for letter, which in (("x", axis.xaxis), ("y", axis.yaxis)):
@@ -700,11 +763,23 @@ def _adjust(made: Figure, wishes: _Wishes) -> None:
                         f"--range {letter}={low:g}:{high:g}: nothing is there, {letter} is "
                         f"{which.label.get_text()} from {min(ends):.4g} to {max(ends):.4g}"
                     )
-            which.label.set_text("\n".join(textwrap.wrap(which.label.get_text(), _ROOM)))
             _label_decades(which)
     for legend in made.legends:
         for text in legend.get_texts():
             text.set_parse_math(False)
+
+
+def _name_axes(made: Figure, names: Mapping[str, str]) -> None:
+    """Labels that the user gave, of panels that have the same."""
+    panels = [axis for axis in made.axes if axis.get_label() != "<colorbar>"]
+    for letter, text in names.items():
+        axes = [axis.xaxis if letter == "x" else axis.yaxis for axis in panels]
+        found = sorted({axis.label.get_text() for axis in axes})
+        if len(found) > 1:
+            raise UsageError(f"found --{letter}label, but the panels have several: "
+                             f"{'; '.join(found)}")  # fmt: skip
+        for axis in axes:
+            axis.label.set_text(printable(text))
 
 
 def _label_decades(which: Any) -> None:
@@ -754,6 +829,10 @@ def _parser() -> _command.Parser:
     add("--kind", choices=KINDS, help="kind of figure; default: what the first file is for")
     add("--quantity", metavar="NAME,NAME", help="columns for sweeps and maps; default: cor")
     add("--legend", metavar="TEXT", action="append", default=[], help="a text for each result")
+    add("--label", metavar="TEXT", action="append", default=[],
+        help="a text for each file of measured points")  # fmt: skip
+    add("--xlabel", metavar="TEXT", help="label of the axis x, where all panels have the same")
+    add("--ylabel", metavar="TEXT", help="label of the axis y, where all panels have the same")
     add("--log", metavar="AXES", help="logarithmic axes: x, y, z (levels), xy ..., or none")
     add("--range", metavar="AXIS=FROM:TO", action="append", default=[],
         help="range of x, y or the levels z, in the unit that is drawn; repeatable")  # fmt: skip
@@ -773,7 +852,8 @@ def _settings(options: Any) -> dict[str, Any]:
     """Arguments of `figure` that differ from their defaults."""
     settings: dict[str, Any] = {"kind": options.kind, "width": options.width}
     settings["quantities"] = options.quantity.split(",") if options.quantity else None
-    settings["legends"] = options.legend or None
+    settings["legends"], settings["labels"] = options.legend or None, options.label or None
+    settings["xlabel"], settings["ylabel"] = options.xlabel, options.ylabel
     settings["hatch"] = False if options.no_hatch else None
     if options.log is not None:
         settings["log"] = "" if options.log == "none" else options.log or "none"

@@ -19,7 +19,7 @@ from .materials.data import is_temperature
 from .materials.units import ZERO_C
 from .results import open as open_results
 
-Source = str | os.PathLike[str] | xr.Dataset
+Source = str | os.PathLike[str] | xr.Dataset | Case
 #: An impact on a material
 IMPACT = """
 &impact velocity = 1.0 /
@@ -29,18 +29,23 @@ IMPACT = """
 
 
 class Result:
-    """Results of a file, materials of a file, or a sweep: its summary, and what else it holds."""
+    """Results of a file, of a case that is solved, of a sweep, or materials of a file."""
 
     def __init__(self, source: Source) -> None:
-        self.path = "sweep" if isinstance(source, xr.Dataset) else os.fspath(source)
-        self._moduli: dict[str, xr.Dataset] = {}
+        self._held: dict[str, xr.Dataset] = {}
         self.groups: set[str] = set()
         if isinstance(source, xr.Dataset):
-            self.summary = source
-        elif self.path.endswith(".nml"):
-            self.summary, self._moduli = xr.Dataset(), _moduli_of(self.path)
-            self.groups |= set(self._moduli)
+            self.path, self.summary = "sweep", source
+        elif isinstance(source, Case):
+            self.path, self.summary = "case", source.run()
+            if not self.summary.dims:
+                self._held["history"] = source.history()
         else:
+            self.path = os.fspath(source)
+        if self.path.endswith(".nml"):
+            self.summary, self._held = xr.Dataset(), _moduli_of(self.path)
+        self.groups |= set(self._held)
+        if not isinstance(source, (xr.Dataset, Case)) and not self._held:
             self.summary = open_results(source)
             with h5netcdf.File(self.path, "r") as file:
                 self.groups |= set(file.groups)
@@ -55,7 +60,7 @@ class Result:
         """A group of the file with some columns; refused if there is none."""
         if name not in self.groups:
             raise InputError(f"{self.path}: there is no {what} in this file")
-        found = self._moduli[name] if self._moduli else open_results(self.path, name)
+        found = self._held[name] if self._held else open_results(self.path, name)
         for column in columns:
             if column not in found:
                 raise InputError(f"{self.path}: there is no '{column}' in '{name}' of this file")
@@ -141,7 +146,7 @@ def _moduli_of(path: str) -> dict[str, xr.Dataset]:
 
 def is_result(source: Source) -> bool:
     """Whether a source is results or materials, and no file of measured points."""
-    return isinstance(source, xr.Dataset) or os.fspath(source).endswith((".h5", ".nml"))
+    return isinstance(source, (xr.Dataset, Case)) or os.fspath(source).endswith((".h5", ".nml"))
 
 
 def legends_of(results: list[Result]) -> list[str]:
