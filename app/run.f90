@@ -64,7 +64,8 @@ contains
          return
       end if
       call end_of(job, outcome, worker%trajectory, error)
-      if (job%files%history) call history_table(tables(2), title, completed, worker%trajectory)
+      if (job%files%history) call history_table(tables(2), title, completed, &
+         worker%problem%impact, worker%trajectory)
       call write_files(job%files, tables, files, trouble)
       if (allocated(trouble)) then
          continue

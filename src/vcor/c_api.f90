@@ -19,6 +19,7 @@ module vcor_c_api
    use vcor_case_body, only : material_of_case
    use vcor_case_problem, only : problem_t
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
+   use vcor_impact_history, only : history
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : history_steps
    use vcor_io_case_reader, only : add_materials, override, read_case, read_case_text
@@ -506,7 +507,7 @@ contains
             trouble%message = handle%case%source//': '//trouble%message
 !$omp end critical (vcor_c_api)
          else
-            call worker%trajectory%sample(history_steps, state)
+            call history(worker%problem%impact, worker%trajectory, history_steps, state)
             call put_copy(values, c_numbers(reshape(state, [size(state)])), trouble)
             if (.not. allocated(trouble)) call put_count(rows, size(state, 2))
          end if

@@ -51,6 +51,7 @@ HISTORY = {
     "sphere_velocity": "m/s",
     "plate_displacement": "m",
     "plate_velocity": "m/s",
+    "contact_radius": "m",
 }
 
 INTEGERS = {"steps"}

@@ -4,13 +4,14 @@ program test_coupled
    use vcor_impact_contact, only : new_contact_modulus, pair_series
    use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, base_thin, &
       face_t, new_face
+   use vcor_impact_history, only : history, history_columns
    use vcor_impact_law, only : cone_factor, new_contact_law, punch_factor
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : waves_none
    use vcor_impact_problem, only : impact_t
    use vcor_impact_response, only : static_response, wave_response
-   use vcor_impact_trajectory, only : col_force, col_impulse, col_sphere, col_sphere_velocity, &
-      col_time, contact_lasting, contact_resting, contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_sphere, &
+      col_sphere_velocity, col_time, contact_lasting, contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : pi, wp
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, prony_t
@@ -365,15 +366,20 @@ contains
    subroutine test_static()
       type(impact_t) :: impact
       type(trajectory_t) :: trajectory
+      type(trajectory_t) :: course
       type(ive_t) :: ive
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
+      real(wp), allocatable :: rows(:, :)
       real(wp) :: mass
+      integer :: i
 
       call rigid_on_plate(rubber(0.5_wp), waves_none, 2.0_wp, impact)
       call new_contact_law(impact%law, 1.5_wp, .true., error)
       call make_ive(1.0e-9_wp, ive)
       call run(ive, impact, outcome)
+      call ive%solve(impact, course, error)
+      call history(impact, course, 50, rows)
       mass = impact%mass
       call make_impact(impact, rubber(0.5_wp), base_half_space, 0.0_wp, 2.0_wp, mass, &
          sphere(0.01_wp), has_waves=.false.)
@@ -381,8 +387,18 @@ contains
       call check_cor(impact, trajectory, outcome%cor_sphere, "receding contact")
       call check_relative(trajectory%max_force, outcome%max_force, 1.0e-3_wp, &
          "receding contact: force")
-      call check_relative(trajectory%contact_radius, sqrt(0.01_wp*outcome%max_indentation), &
-         1.0e-3_wp, "receding contact: radius")
+      call check_relative(maxval(trajectory%radius(0:trajectory%last)), &
+         sqrt(0.01_wp*outcome%max_indentation), 1.0e-3_wp, "receding contact: radius")
+      do i = 1, 49
+         call check_close(trajectory%radius_at(rows(col_time, i)), rows(history_columns, i), &
+            1.0e-3_wp*maxval(trajectory%radius(0:trajectory%last)), "receding contact: history")
+      end do
+      ! a law that does not recede has the radius of its indentation
+      impact%law%receding = .false.
+      call ive%solve(impact, course, error)
+      call history(impact, course, 50, rows)
+      call check(all(abs(rows(history_columns, :) - sqrt(0.01_wp*max(rows(col_indentation, :), &
+         0.0_wp))) <= 1.0e-12_wp), "Boltzmann's contact has the radius of its indentation")
    end subroutine test_static
 
    !> Zener's plate: an elastic impact depends on lambda = alpha m/T alone
@@ -615,7 +631,8 @@ contains
          punch_factor(radius), exponent=1.0_wp)
       call solve(impact, trajectory)
       call check(trajectory%cor_sphere_error <= accuracy, "a punch on a layer converges")
-      call check_relative(trajectory%contact_radius, radius, 0.01_wp, "its radius is its own")
+      call check_relative(maxval(trajectory%radius(0:trajectory%last)), radius, 0.01_wp, &
+         "its radius is its own")
    end subroutine test_punch
 
    !> The contact time does not depend on the places of springs and steps, although waves make the

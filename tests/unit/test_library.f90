@@ -294,7 +294,7 @@ contains
       call problem%solve(trajectory, outcome, error)
       call success(error, "the impact of a case is solved")
       call check_close(outcome%cor, sls_cor, tolerance, "the paper's impact by its case")
-      call history_table(table, 'sls', case_text(case, complete=.true.), trajectory)
+      call history_table(table, 'sls', case_text(case, complete=.true.), problem%impact, trajectory)
       call check_contains(table%case_text, 'velocity', "a table has its case")
       call write_csv('no/such/folder/x.csv', table, error)
       call refused(error, error_file, "no folder for a text")

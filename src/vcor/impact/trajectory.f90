@@ -85,8 +85,8 @@ module vcor_impact_trajectory
       real(wp) :: max_force_error = unset
       !> Accuracy requested for both [-]; 0 if none was, as the time step is given
       real(wp) :: accuracy = 0.0_wp
-      !> Largest contact radius [m]; NaN: that of the contact law at the largest indentation
-      real(wp) :: contact_radius = unset
+      !> Contact radius at the nodes [m], shape (0:); unallocated: that of the contact law
+      real(wp), allocatable :: radius(:)
       !> Number of exponentials that approximate the kernel; 0 if it is used unchanged
       integer :: kernel_terms = 0
       !> Estimated largest relative error of that sum
@@ -109,6 +109,7 @@ module vcor_impact_trajectory
       procedure :: misses_by_far
       procedure :: sample
       procedure :: indentation_at
+      procedure :: radius_at
       procedure :: impulse_at
    end type trajectory_t
 
@@ -340,6 +341,24 @@ contains
             - (1.0_wp - x)*step*right(col_velocity))
       end associate
    end function indentation_at
+
+   !> Contact radius at a time of the contact, linear between the nodes, of a solver that has one
+   pure function radius_at(self, time) result(radius)
+      class(trajectory_t), intent(in) :: self
+      !> Time since first contact [s], up to that of the last node
+      real(wp), intent(in) :: time
+      !> Radius [m]
+      real(wp) :: radius
+
+      real(wp) :: part
+      integer :: i
+
+      i = max(1, count(self%state(col_time, 0:self%last - 1) < time))
+      associate (t => self%state(col_time, i - 1:i), a => self%radius(i - 1:i))
+         part = (time - t(1))/(t(2) - t(1))
+         radius = (1.0_wp - part)*a(1) + part*a(2)
+      end associate
+   end function radius_at
 
    !> Impulse at a time of the contact, of a collocation solution
    pure function impulse_at(self, time) result(impulse)

@@ -142,13 +142,14 @@ contains
       frequency = pi/outcome%contact_time
       if (around%drops .and. outcome%cor_sphere >= 0.0_wp) outcome%rebound_height = &
          outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*around%gravity)))
-      if (ieee_is_nan(trajectory%contact_radius)) then
+      if (allocated(trajectory%radius)) then
+         outcome%contact_radius = maxval(trajectory%radius(0:trajectory%last))
+         force_radius = trajectory%radius_at(outcome%time_of_max_force)
+      else
+         ! the force is largest before the contact recedes
          outcome%contact_radius = impact%contact_radius(outcome%max_indentation)
          force_radius = impact%contact_radius( &
             trajectory%indentation_at(outcome%time_of_max_force))
-      else
-         outcome%contact_radius = trajectory%contact_radius
-         force_radius = trajectory%contact_radius
       end if
       outcome%weight_ratio = impact%mass*around%gravity/outcome%max_force
       outcome%mean_pressure = outcome%max_force/(pi*force_radius**2)

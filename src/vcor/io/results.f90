@@ -11,6 +11,8 @@
 !> omega >= omega_min, is given by contact_time and min_frequency of each table, which are missing
 !> if the impact has no result, and by the column in_window.
 module vcor_io_results
+   use vcor_impact_history, only : history
+   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
    use vcor_io_table, only : add_column, add_dimension, column_of, column_t, new_table, &
       real_column, table_t, text_column
@@ -97,17 +99,19 @@ contains
    end function quantity_column
 
    !> History: a row per time
-   subroutine history_table(table, title, case_text, trajectory)
+   subroutine history_table(table, title, case_text, impact, trajectory)
       type(table_t), intent(out) :: table
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: case_text
+      type(impact_t), intent(in) :: impact
+      !> Its trajectory
       type(trajectory_t), intent(in) :: trajectory
 
       real(wp), allocatable :: state(:, :)
       integer :: j
 
       call new_table(table, 'history', title, case_text)
-      call trajectory%sample(history_steps, state)
+      call history(impact, trajectory, history_steps, state)
       associate (time => history_quantities(col_time))
          call add_dimension(table, column_of(time%name, state(col_time, :), time%unit, &
             time%meaning))

@@ -497,9 +497,10 @@ contains
       associate (a => pair%coarse, b => pair%fine)
          n = count([(real(i, wp)*a%dt < pair%contact_time, i=1, min(a%steps - 1, (b%steps - 1)/2))])
          call fill(trajectory, impact, a%dt, limit(a%force(0:n), b%force(0:2*n:2)), &
-            limit(a%z(0:n), b%z(0:2*n:2)), limit(a%velocity(0:n), b%velocity(0:2*n:2)))
+            limit(a%z(0:n), b%z(0:2*n:2)), limit(a%velocity(0:n), b%velocity(0:2*n:2)), &
+            b%radius(0:2*n:2))
          trajectory%steps = a%steps + b%steps
-         trajectory%contact_radius = maxval(b%radius)
+         trajectory%radius(n + 1) = 0.0_wp
          ! the end, with the impulse of the whole contact
          n = n + 1
          trajectory%last = n
@@ -533,7 +534,7 @@ contains
 
       associate (n => course%steps)
          call fill(trajectory, impact, course%dt, course%force(0:n), course%z(0:n), &
-            course%velocity(0:n))
+            course%velocity(0:n), course%radius(0:n))
          trajectory%steps = n
          trajectory%last = n
          trajectory%final = n
@@ -545,20 +546,21 @@ contains
          top = peak(course%z(0:n), course%dt, smooth)
          trajectory%max_indentation = top%value
          trajectory%time_of_max_indentation = top%time
-         trajectory%contact_radius = maxval(course%radius)
       end associate
       call share_impulse(trajectory)
    end subroutine record_contact
 
    !> Record equal steps. The plate has no displacement apart from the indentation: both are the
    !> approach of the sphere to the undisturbed face
-   subroutine fill(trajectory, impact, dt, force, z, velocity)
+   subroutine fill(trajectory, impact, dt, force, z, velocity, radius)
       type(trajectory_t), intent(inout) :: trajectory
       type(impact_t), intent(in) :: impact
       !> Step [s]
       real(wp), intent(in) :: dt
       !> Force [N], displacement [m] and velocity of the sphere [m/s], shape (0:n)
       real(wp), intent(in) :: force(0:), z(0:), velocity(0:)
+      !> Contact radius [m], same shape
+      real(wp), intent(in) :: radius(0:)
 
       integer :: i, n
 
@@ -574,6 +576,8 @@ contains
             *(impact%free_velocity(real(i, wp)*dt) - velocity(i))
       end do
       trajectory%state(col_indentation, :) = trajectory%state(col_sphere, :)
+      allocate (trajectory%radius(0:n + 1), source=unset)
+      trajectory%radius(0:n) = radius
    end subroutine fill
 
    !> Share the impulse of each step among its ends. Forces would do worse: they may begin as the

@@ -4,8 +4,9 @@ module vcor_sweep_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_t, raise
+   use vcor_impact_history, only : history_columns
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : columns, contact_lasting, contact_resting, &
+   use vcor_impact_trajectory, only : contact_lasting, contact_resting, &
       contact_separated, contact_sticking, contact_unknown
    use vcor_impact_validity, only : level_none, levels, thresholds
    use vcor_kinds, only : wp
@@ -111,8 +112,8 @@ module vcor_sweep_quantity
       procedure :: put, row
    end type summary_t
 
-   !> Columns of a history, in the order of the rows of the state of a trajectory
-   type(quantity_t), parameter :: history_quantities(columns) = [ &
+   !> Columns of a history, in the order of its rows
+   type(quantity_t), parameter :: history_quantities(history_columns) = [ &
       quantity_t('time', 't', 's', 'time since first contact'), &
       quantity_t('indentation', 's', 'm', 'indentation'), &
       quantity_t('relative_velocity', "s'", 'm/s', 'rate of the indentation'), &
@@ -121,7 +122,8 @@ module vcor_sweep_quantity
       quantity_t('sphere_displacement', 'z', 'm', 'displacement of the sphere'), &
       quantity_t('sphere_velocity', "z'", 'm/s', 'velocity of the sphere'), &
       quantity_t('plate_displacement', 'U', 'm', 'displacement of the plate'), &
-      quantity_t('plate_velocity', "U'", 'm/s', 'velocity of the plate')]
+      quantity_t('plate_velocity', "U'", 'm/s', 'velocity of the plate'), &
+      quantity_t('contact_radius', 'a', 'm', 'radius of the contact')]
 
 contains
 

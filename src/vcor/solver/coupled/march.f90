@@ -407,7 +407,7 @@ contains
    end function supersonic
 
    !> Find the time at which the contact has ended. The approach on the axis ends like the root of
-   !> time, as waves are sent out by the falling force; if those of a half space had passed, it would
+   !> time, as the falling force sends out waves; if those of a half space had passed, it would
    !> fall as steadily as the bodies move apart, and its root does not depend on the steps
    pure subroutine end_contact(course, impact, kernel, axis, hats)
       !> The course, its last step the first without contact
@@ -420,7 +420,7 @@ contains
       real(wp), contiguous, intent(in) :: hats(:)
 
       ! part of the time with a fast edge by which the waves advance the end: 0.06 to 0.08 for
-      ! Poisson's ratios of 0.5 to 0 on elastic half spaces with steps that resolve it, and its error
+      ! Poisson's ratios of 0.5 to 0 on elastic half spaces and steps that resolve it; its error
       real(wp), parameter :: advance = 0.07_wp, unknown = 0.03_wp
       real(wp) :: steady(size(axis)), fast
       integer :: i, k
