@@ -71,11 +71,12 @@ module vcor_app_commands
       !
       entry_t("command", "material"), &
       entry_t("usage", "vcor material CASE.nml ... [options]"), &
-      entry_t("summary", "compute moduli over time and frequency"), &
-      entry_t("", "Computes the moduli of each material of a case: relaxation modulus over time; " &
-      //"storage modulus, loss modulus and loss tangent over angular frequency. It solves the " &
-      //"impact as well, to mark the window that matters to it: t <= t0 and omega >= 2 pi/t0, " &
-      //"with t0 the contact time. For a case with &sweep groups, the first point is taken."), &
+      entry_t("summary", "compute moduli against time and frequency"), &
+      entry_t("", "Computes the moduli of each material of a case: relaxation modulus against " &
+      //"time; storage modulus, loss modulus and loss tangent against angular frequency. It " &
+      //"solves the impact as well, to mark the window that matters to it: t <= t0 and " &
+      //"omega >= 2 pi/t0, with t0 the contact time. For a case with &sweep groups, the " &
+      //"first point is taken."), &
       entry_t("STEM_material.csv", "one row per material: glassy and rubbery modulus, values at " &
       //"t0 and 2 pi/t0"), &
       entry_t("STEM_material_relaxation.csv", "material, time, relaxation_modulus, in_window"), &
@@ -108,7 +109,7 @@ module vcor_app_commands
       //"if it matters, both pairs. No files are written. The columns are:"), &
       entry_t("states", "error of cor that the solution itself estimates"), &
       entry_t("off by", "distance from the best cor; honest if at most three times the estimate"), &
-      entry_t("dW/KE_0", "energy imbalance over the energy before the impact"), &
+      entry_t("dW/KE_0", "energy imbalance, divided by the energy before the impact"), &
       entry_t("order", "order of convergence of direct"), &
       entry_t("digits", "significant digits to trust: those that the solution at the accuracy of " &
       //"the case shares with the best of both methods"), &
@@ -116,7 +117,7 @@ module vcor_app_commands
       entry_t("--quiet", "print nothing"), &
       entry_t("", "Ends with exit code 5 if a row fails, the methods disagree by more than their " &
       //"estimates, the energies do not close, or a solution fails. A contact that does not end " &
-      //"is no failure if both methods agree on it."), &
+      //"is not a failure if both methods agree on it."), &
       entry_t("example", "vcor verify examples/paper/sls.nml"), &
       !
       entry_t("command", "help"), &
@@ -125,7 +126,7 @@ module vcor_app_commands
       entry_t("", "Prints a page of help. TOPIC is a command, `input` (all groups and keys of a " &
       //"case), `output` (all columns and statuses), or any word of the input or the output: " &
       //"`vcor help velocity`, `vcor help prony`, `vcor help sticks`."), &
-      entry_t("--json", "print everything that the program knows about its commands, input and " &
+      entry_t("--json", "print everything about its commands, input and " &
       //"output as one JSON document"), &
       entry_t("example", "vcor help velocity")]
 

@@ -224,7 +224,7 @@ contains
       !> Error of code `error_input`, unallocated on success, even without a result
       type(error_t), allocatable, intent(out) :: error
 
-      !> Contact time over the time scale of Hertz's impact, about
+      !> Contact time divided by the time scale of Hertz's impact, about
       real(wp), parameter :: hertz = 3.0_wp
       type(worker_t) :: worker
       type(outcome_t) :: outcome

@@ -30,7 +30,7 @@ module vcor_app_laws
       real(wp) :: shared = 0.0_wp
       !> Methods that solve the impact, separated by blanks
       character(len=10) :: methods = 'ive direct'
-      !> Groups of the case beside the sphere and the solver
+      !> Groups of the case, without the sphere and the solver
       character(len=240) :: text = ''
    end type law_t
 

@@ -140,8 +140,8 @@ contains
       if (outcome%is_coupled()) call add('contact and waves are solved as one: cor is ' &
          //'cor_sphere, and hysteresis_energy, wave_energy, deflection_ratio and inelasticity ' &
          //'are nan')
-      if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
-         //'(cor_sphere below zero): the plate has run away from it, and it will strike again')
+      if (outcome%cor_sphere < 0.0_wp) call add('the sphere does not rebound (cor_sphere ' &
+         //'below zero): the plate moves faster than it, and it will strike the plate again')
       if (uncovered(job, outcome) /= '') call add(uncovered(job, outcome))
 
    contains

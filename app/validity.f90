@@ -154,9 +154,9 @@ contains
             select case (thresholds(measure)%measure)
             case ('contact_ratio')
                if (value > outcome%contact_ratio) then
-                  words = 'the sphere gives way and is no half space, its dent is about ' &
+                  words = 'the sphere is not a half space: its indentation is about ' &
                      //percent(0.5_wp*outcome%sphere_ratio) &
-                     //' too deep; a slower impact makes a smaller contact'
+                     //' too large; a slower impact makes a smaller contact'
                   return
                end if
                ! first term of Sneddon's force over Hertz's
@@ -401,7 +401,7 @@ contains
       character(len=*), intent(in) :: owner
       !> Contact times [s]
       real(wp), intent(in) :: contacts(:)
-      !> In words; empty if they do, or if the material is no table
+      !> In words; empty if they do, or if the material is not a table
       character(len=:), allocatable :: text
 
       !> The times that matter, from this fraction of the contact time to the contact time

@@ -1,4 +1,4 @@
-# What `cmake --install` puts where: component program is what runs, development is what others build
+# Where `cmake --install` puts files: component program is for users, development is what others build
 # with. Everything is found relative to the prefix, so the tree can be moved as a whole.
 include(CMakePackageConfigHelpers)
 
@@ -43,8 +43,8 @@ install(FILES
   "${PROJECT_BINARY_DIR}/vcorConfig.cmake" "${PROJECT_BINARY_DIR}/vcorConfigVersion.cmake"
   DESTINATION "${vcor_cmake_folder}" COMPONENT development)
 
-# For pkg-config. What a static library stands on is needed by everyone who links with it, so it is
-# not private then, and nobody has to know about --static
+# For pkg-config. Everyone who links with a static library needs its dependencies, so they are not
+# private then, and --static is not needed
 file(RELATIVE_PATH vcor_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" vcor_up "${vcor_up}")
 # vcor_pkg_config(<name> <part> ...): the file of some parts, those that need others first. Part vcor is
@@ -135,7 +135,7 @@ if(TARGET vcor_python)
   endforeach()
 endif()
 
-# What users read
+# Documents for users
 install(FILES README.md LICENSE CHANGELOG.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
   USE_SOURCE_PERMISSIONS)

@@ -1,4 +1,4 @@
-# What the library stands on, each in one line of CMakeLists.txt:
+# Dependencies of the library, each in one line of CMakeLists.txt:
 #
 #   vcor_needs(<target> <package> [COMPONENTS <component> ...] TARGETS <imported target> ...
 #              [DEBIAN <package> ...])
@@ -28,12 +28,12 @@ macro(vcor_needs target package)
   endforeach()
 endmacro()
 
-# What a linker is told about a target or a library: -L/folder -lname for a file, without the folder
-# where the linker looks by itself, -lname, or an option
+# Words of the linker's command line for a target or a library: -L/folder -lname for a file, without
+# a folder that the linker searches anyway, -lname, or an option
 function(vcor_library_words result library)
   set(words)
   if(TARGET ${library})
-    # an imported target is its file and what it stands on itself
+    # an imported target is its file and its own dependencies
     foreach(property IN ITEMS
         IMPORTED_LOCATION IMPORTED_LOCATION_RELEASE IMPORTED_LOCATION_NONE INTERFACE_LINK_LIBRARIES)
       get_target_property(values ${library} ${property})
@@ -49,7 +49,7 @@ function(vcor_library_words result library)
       list(APPEND words ${values})
     endif()
     if(library STREQUAL "OpenMP::OpenMP_Fortran")
-      # the option brings the library, and what the compiler knows of it
+      # the compiler's option links the library, too
       set(words ${OpenMP_Fortran_FLAGS})
     endif()
   elseif(IS_ABSOLUTE "${library}")

@@ -1,6 +1,6 @@
 """Completion of the words of `vcor` in bash, zsh and fish, from what `vcor help --json` says.
 
-scripts/manual.py writes the files. What a program vcor-NAME of PATH takes is asked of its own --help.
+scripts/manual.py writes the files. The options of a program vcor-NAME of PATH come from its own --help.
 """
 
 import re

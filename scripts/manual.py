@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Make the references in docs/, the man pages and completion/ from what the program knows of itself.
+"""Make the references in docs/, the man pages and completion/ from the program's description of itself.
 
     scripts/manual.py [--check] [PROGRAM]        default: build/release/vcor
 
@@ -122,7 +122,7 @@ def exit_codes(document, man):
 
 
 def value_of(key):
-    """What a key takes."""
+    """Values that a key may have."""
     if not key["choices"]:
         return f"{key['value']} {key['range']}".strip()
     return ("one of " if len(key["choices"]) > 1 else "") + code(key["choices"])

@@ -108,7 +108,7 @@ as_root=()
 if [ "$(id -u)" -ne 0 ]; then
    have sudo || fail "neither root nor sudo; please install ${missing[*]}"
    as_root=(sudo)
-   # Without a terminal nobody can type a password
+   # Without a terminal there is no way to enter a password
    if [ ! -t 0 ]; then
       sudo -n true 2>/dev/null \
          || fail "sudo wants a password, and there is no terminal;" \
@@ -123,7 +123,7 @@ apt_get() {
 }
 
 say "apt-get update"
-# A list of somebody else's that cannot be had is no reason to stop
+# A package list of a third party that cannot be loaded is not a reason to stop
 apt_get update || say "apt-get update had errors, going on with the lists that are there"
 say "apt-get install ${missing[*]}"
 apt_get install --no-install-recommends "${missing[@]}" \

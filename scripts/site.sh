@@ -24,7 +24,7 @@ if [ "$made_of" != "$(cat "$venv/made_of" 2>/dev/null)" ]; then
    printf '%s' "$made_of" >"$venv/made_of"
 fi
 
-# The pages as they are, beside links to the folders that they name
+# The pages as they are, with links to the folders that they name
 rm -rf "$site"
 mkdir -p "$site"
 cp -r docs "$site/docs"

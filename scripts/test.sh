@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing and runs the tests: CMake release with the ranks of MPI, CMake debug, fpm,
-# the linters. What takes long, such as damaged input at length, is in scripts/test_long.sh.
+# the linters. Long tests, such as damaged input at length, is in scripts/test_long.sh.
 # Stops at the first step that fails. The last line is the sum of all tests: N passed, N failed
 set -euo pipefail
 
@@ -86,7 +86,7 @@ find_hdf5() {
    fi
 }
 
-# What fpm builds, without its own flags, which take a third longer: the program, and a project that
+# The builds of fpm, without its own flags, which take a third longer: the program, and a project that
 # depends on vcor. The test programs with fpm are in scripts/test_long.sh
 fpm_builds() {
    find_hdf5
@@ -104,7 +104,7 @@ run_linters() {
    (cd python && "$venv/bin/mypy")
 }
 
-# wait_for PROCESS FILE: the end of a process beside the others; shows what it has printed
+# wait_for PROCESS FILE: wait for a process in the background and show its output
 wait_for() {
    local code=0
    wait "$1" || code=$?
@@ -115,7 +115,7 @@ wait_for() {
 begin "set-up"
 scripts/setup.sh --tests
 
-begin "environment of Python, beside the release build"
+begin "environment of Python, during the release build"
 make_venv &
 environment=$!
 build release -DVCOR_TEST_RANKS=ON
@@ -124,7 +124,7 @@ wait $environment
 build release
 run_tests release
 
-# fpm compiles one file after the other at times, and a linter takes one core: beside the debug build
+# fpm compiles one file after the other at times, and a linter takes one core: they run during the debug build
 fpm_builds &>build/fpm.txt &
 fpm=$!
 run_linters &>build/linters.txt &

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What scripts/test.sh leaves out because it takes long, to be run by hand before a release, after
+# Long tests that scripts/test.sh leaves out, to be run by hand before a release, after
 # scripts/test.sh: the wheel with other Pythons, input for other programs run in them, standard errors of a
 # thousand fits; a build for MPI; all tests in the debug build; the test programs with fpm; damaged input
 # at length.

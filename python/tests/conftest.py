@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 from hypothesis import HealthCheck, settings
 
-# The same examples in each run, and nothing written beside the sources
+# The same examples in each run, and nothing written next to the sources
 settings.register_profile("vcor", deadline=None, database=None, derandomize=True,
                           suppress_health_check=list(HealthCheck))  # fmt: skip
 settings.load_profile("vcor")

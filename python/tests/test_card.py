@@ -644,13 +644,13 @@ SHIFTED = {
 
 @pytest.mark.parametrize("code", SHIFTED)
 def test_degrees_celsius(tmp_path, code, capsys):
-    """A reference temperature that is no kelvin is taken as degrees Celsius, and that is said."""
+    """A reference temperature that is not in K is taken as degrees Celsius, with a remark."""
     for given, options in ((25, {}), (25, {"celsius": True}), (298.15, {}), (-10, {})):
         (tmp_path / "card.inp").write_text(SHIFTED[code].format(given))
         found = vcor.read_card(tmp_path / "card.inp", code=code, **options)
         kelvin = given + (273.15 if given < 100 else 0)
         assert found.shift["reference_temperature"] == pytest.approx(kelvin)
-        said = any("no kelvin: taken as degrees Celsius" in one for one in found.remarks)
+        said = any("not in K: taken as degrees Celsius" in one for one in found.remarks)
         assert said == (given < 100 and not options)
     cards.main([str(tmp_path / "card.inp"), "--for", code])
     assert "taken as degrees Celsius" in capsys.readouterr().err

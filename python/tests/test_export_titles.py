@@ -30,7 +30,7 @@ LINES = {"lammps": "#", "liggghts": "#", "mfix": "!"}
 
 
 def parsed(name, ending, text, folder):
-    """What the parser of a format makes of a file; whatever a comment holds is no part of it."""
+    """A file as the parser of its format reads it, without comments."""
     if ending == ".xml":
         return ET.tostring(ET.fromstring(text))
     if ending == ".py":

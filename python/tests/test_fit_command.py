@@ -416,7 +416,7 @@ def test_what_is_at_its_bound(vcor):
     assert 2e4 < float(error) < 4e5
     assert f"\n! equilibrium_modulus is at its bound: 0.0E+00 +- {error} Pa\n&material" in out
     assert group(out)["equilibrium_modulus"] == 0
-    # what is given is no unknown: the others are known the better for it
+    # a given value is not fitted: the standard errors of the others are smaller
     words = ["--model", "power_law", "--fix", "equilibrium_modulus=0"]
     given = vcor.succeeds("fit", "data.csv", *words)
     errors = [float(re.search(r"exponent .*\+- (\S+)$", text, re.M)[1]) for text in (out, given)]

@@ -102,7 +102,7 @@ def test_what_vanishes_is_at_its_bound():
     assert found.values[1:] == pytest.approx([8.85e5, 0.5], rel=1e-8)
     _, found = fit_law("sls", {}, sampled("sls", 1e-5, 1e-2, 61, alpha=0.0))
     assert (found.values[1], found.states[1]) == (0.0, "bound")
-    # an exponent of 1, and a rate that runs away
+    # an exponent of 1, and a rate that tends to infinity
     _, found = fit_law("mittag_leffler", {}, usual("sls"))
     assert (found.values[2], found.states[2]) == (1.0, "bound")
     assert found.values[3] == pytest.approx(1 / 1200, rel=1e-8)

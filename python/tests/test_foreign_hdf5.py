@@ -1,4 +1,4 @@
-"""HDF5 files that nobody vouches for: results, or an error of one line, in seconds."""
+"""HDF5 files of unknown origin: results, or an error of one line, in seconds."""
 
 import os
 import shutil

@@ -85,7 +85,7 @@ def test_other_calls_do_not_wait_for_a_comparison(sls):
 
 
 def test_the_first_part_is_one_point_a_thread(sls, monkeypatch):
-    """Nobody knows how long a point takes before one is solved."""
+    """The time of a point is unknown before one is solved."""
     solve, lengths = vcor.Case._solve, []
 
     def watched(self, addresses, values, names, threads):

@@ -13,7 +13,7 @@ def imports(path, known):
     found = set()
     own = path.relative_to(ROOT).parent.parts
     tree = ast.parse(path.read_text())
-    # names of types alone are no arrow
+    # names of types alone are not an arrow
     tree.body = [
         one for one in tree.body
         if not (isinstance(one, ast.If) and "TYPE_CHECKING" in ast.dump(one.test))

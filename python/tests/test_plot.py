@@ -565,8 +565,8 @@ def bad(results):
         (["sweep.h5", "--range", "x=nan:1"], 2, "expected a range"),
         (["cube.h5", "--levels", "a"], 2, "or levels such as"),
         (["cube.h5", "--levels", "0.5"], 2, "expected two or more"),
-        (["cube.h5", "--levels", "nan,1"], 2, "no finite number"),
-        (["cube.h5", "--levels", "inf,1"], 2, "no finite number"),
+        (["cube.h5", "--levels", "nan,1"], 2, "not a finite number"),
+        (["cube.h5", "--levels", "inf,1"], 2, "not a finite number"),
         (["sweep.h5", "--log", "w"], 2, "expected letters among x, y, z"),
         (["sweep.h5", "--width", "1"], 2, "a width of 1 cm"),
         (["sweep.h5", "--width", "85"], 2, "such as 85mm"),
@@ -647,7 +647,7 @@ def test_names_are_names(results, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("mask, mode", [(0o022, 0o644), (0o077, 0o600)])
 def test_permissions(results, tmp_path, mask, mode):
-    """Files have the permissions that the umask leaves, and a link gives way to the file."""
+    """Files have the permissions that the umask leaves, and a link is replaced by the file."""
     (tmp_path / "victim").write_text("precious")
     (tmp_path / "b.svg").symlink_to(tmp_path / "victim")
     before = os.umask(mask)

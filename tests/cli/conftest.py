@@ -14,6 +14,6 @@ def vcor(tmp_path):
 
 @pytest.fixture
 def data_files(vcor):
-    """The data of the examples: a case that is made from one looks for them beside it."""
+    """The data of the examples: a case that is made from one looks for them next to it."""
     for path in (ROOT / "examples").glob("*_data.csv"):
         shutil.copy(path, vcor.folder)

@@ -77,7 +77,7 @@ def program():
 
 @dataclass
 class Done:
-    """What a run left behind."""
+    """Files that a run has left."""
 
     code: int
     out: str
@@ -102,7 +102,7 @@ class Vcor:
         self.folder = folder
 
     def write(self, text, name="case.nml"):
-        """Write a case file; its name, as the program is told it."""
+        """Write a case file; its name, as the command line has it."""
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         if isinstance(text, bytes):

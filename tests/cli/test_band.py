@@ -49,7 +49,7 @@ def test_data_that_end_too_soon(vcor):
 
 
 def test_sweep_leans(vcor):
-    """Of a sweep the worse of the shortest and the longest contact is told."""
+    """For a sweep the worse of the shortest and the longest contact is reported."""
     done = vcor("run", PAPER.parent / "sweeps" / "butyl_power_law_velocity.nml", "--quiet",
                 "--set", "butyl.valid_from=1e-6", "--set", "sweep.count=3")
     assert done.code == SUCCESS and done.err.count("\n") == 1

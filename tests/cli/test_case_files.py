@@ -1,4 +1,4 @@
-"""Files that are no case: the file's fault, not a key's."""
+"""Files that are not cases: the error names the file, not a key."""
 
 import os
 import shutil

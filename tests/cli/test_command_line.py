@@ -278,7 +278,7 @@ def test_two_topics(vcor):
 
 
 def test_closed_screen(sls):
-    """A screen that nobody reads: the files are there and the exit code says it."""
+    """A closed standard output: the files are written and the exit code says it."""
     done = sls("run", "case.nml", preexec_fn=lambda: os.close(1))
     complaint(done, FILE, "standard output")
     assert names(sls.folder) == FILES | {"case.nml"}

@@ -1,4 +1,4 @@
-"""Completion of words in the shells, from completion/, and what help knows of programs of PATH."""
+"""Completion of words in the shells, from completion/, and the help about programs of PATH."""
 
 import json
 import os

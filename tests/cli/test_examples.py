@@ -183,7 +183,7 @@ def test_f90nml_reads_a_failed_case(vcor):
 
 
 def test_rounding_is_shown_as_zero(vcor):
-    """An elastic body is left without a dent, and loses nothing in the contact."""
+    """An elastic body has no indentation left, and loses nothing in the contact."""
     screen = vcor.succeeds("run", str(PAPER / "elastic.nml"))
     for symbol, unit in {r"s\(t0\)": " m", "s0/smax": "", "W_h": " J"}.items():
         assert re.search(rf" {symbol} +0{unit}( |$)", screen, re.M), symbol

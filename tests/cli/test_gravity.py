@@ -234,7 +234,7 @@ def test_sweep(vcor):
 
 
 def test_more_than_any_weight(vcor):
-    """A panel that ends without any indentation is no solution, and nothing is divided by it."""
+    """A panel that ends without any indentation is not a solution, and nothing is divided by it."""
     path = PAPER / "butyl_power_law_50_frozen.nml"
     words = ["plate.waves=relaxing", "contact.law=receding", "solver.method=ive", "impact.gravity=1e60"]
     done = vcor("run", path, "--print", "cor", *(word for setting in words for word in ("--set", setting)))

@@ -136,7 +136,7 @@ def test_words_of_the_output(vcor, word):
     [("hertz", "contact.law"), ("layer", "plate.base"), ("pad", "plate.base"), ("ting", "receding"), ("zener", "'constant'")],
 )
 def test_words_of_the_field(vcor, word, says):
-    """Terms that are no word of the input lead to the keys that have to do with them."""
+    """Terms that are not words of the input lead to related keys."""
     assert says in " ".join(vcor.succeeds("help", word).split())
 
 
@@ -163,7 +163,7 @@ def test_symbols_of_the_screen(vcor, symbol, name):
 
 
 def test_words_of_the_screen(vcor):
-    """What a run prints that is no column."""
+    """Words of the screen that are not columns."""
     assert "left to the sphere" in vcor.succeeds("help", "KE_1")
     assert "numerical error" in vcor.succeeds("help", "+-")
     for word in ("exponentials", "kernel"):

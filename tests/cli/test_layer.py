@@ -105,7 +105,7 @@ def test_pad(vcor):
     assert found["residual_indentation"] == pytest.approx(0.00044261088208, rel=NEAR)
     assert found["layer_ratio"] == pytest.approx(0.006416918627 / 0.0125, rel=NEAR)
     assert found["layer_stiffening"] == pytest.approx(1.889, abs=0.001)
-    # a layer on a floor neither bends nor radiates as a half space, and its law knows its thickness
+    # a layer on a floor neither bends nor radiates as a half space, and its law contains its thickness
     for name in (
         "half_space_loss",
         "bending_loss",
@@ -243,7 +243,7 @@ def test_too_thin(vcor):
 
 
 def test_spheres_of_the_layer(vcor):
-    """Two bodies of one material, or two elastic ones, share the dent; a rigid plate has no layer."""
+    """Two bodies of one material, or two elastic ones, share the indentation; a rigid plate has no layer."""
     ball = PAD.replace("material = 'steel'", "material = 'rubber'")
     vcor.write(ball)
     found = vcor.numbers("case.nml")

@@ -6,7 +6,7 @@ from program import INPUT, NUMERICAL, PAPER, ROOT, SUCCESS
 
 # Round-off of numbers near 1 after some hundred steps
 ROUNDOFF = 1e-13
-# How many times the stated error the true one may be: an estimate is no bound
+# How many times the stated error the true one may be: an estimate is not a bound
 HONEST = 10
 
 CASES = [
@@ -165,7 +165,7 @@ def test_stiff_material_without_equilibrium_modulus(vcor):
 
 @pytest.mark.parametrize("beta", ["3.3e7", "3.5e7", "1.0e8"])
 def test_nearly_a_fluid(vcor, beta):
-    """Contact lasts ten minutes and ends: that fixed steps give up earlier is no answer."""
+    """Contact lasts ten minutes and ends: that fixed steps give up earlier is not an answer."""
     found = {}
     for accuracy in ("1e-6", "1e-8", "1e-10"):
         done = vcor(
@@ -181,7 +181,7 @@ def test_nearly_a_fluid(vcor, beta):
 
 
 def test_step_without_effect(vcor):
-    """A time step beside the method that chooses its own is told to be without effect; set for it,
+    """A time step with a method that chooses its own has no effect, which a note says; set for it,
     it is refused."""
     path = PAPER / "sls_elastic_limit.nml"
     note = "note: solver.time_step is without effect"
@@ -254,7 +254,7 @@ BODIES = {
 )
 def test_two_bodies(vcor, pair, law):
     """Eq. (1) of two bodies that relax: fitted for ive, taken as it is by direct. The first pair
-    relaxes within a hundredth of the contact; its error is told to be far larger than it is."""
+    relaxes within a hundredth of the contact; its stated error is far larger than the true one."""
     sphere, plate = pair.split()
     vcor.write(f"""
         &impact velocity = 8 /

@@ -35,7 +35,7 @@ def test_names(vcor, name, stem):
 
 @pytest.mark.parametrize("folder", ["two words", "Übung α", "a/b/c"])
 def test_folders(vcor, folder):
-    """Files go to the current directory, not beside the case."""
+    """Files go to the current directory, not next to the case."""
     vcor.write(SLS, f"{folder}/case.nml")
     vcor.succeeds("run", f"{folder}/case.nml")
     assert results(vcor.folder) == {"case_summary.csv", "case.csv", "case.h5"}
@@ -91,7 +91,7 @@ def test_other_line_ends(vcor):
 
 
 def test_program_through_a_link(vcor):
-    """The program does not look for anything beside itself."""
+    """The program does not look for anything next to itself."""
     vcor.write(SLS)
     (vcor.folder / "bin").mkdir()
     (vcor.folder / "bin" / "restitution").symlink_to(program())

@@ -146,7 +146,7 @@ FLEEING = """&impact velocity = 15.0 /
 
 
 def test_a_plate_that_gives_energy_back_is_seen(vcor):
-    """A share below zero is no zero, and one of many times the whole has room."""
+    """A share below zero is not printed as zero, and there is room for one of many times the whole."""
     vcor.write(FLEEING)
     screen = vcor("run", "case.nml").out
     assert "**" not in screen

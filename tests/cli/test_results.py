@@ -324,7 +324,7 @@ def test_equilibrium_modulus_of_next_to_nothing(vcor, rate, modulus):
 
 
 def test_reason_to_stick(vcor):
-    """It names what is so: no equilibrium modulus, losses in spite of one, a plate that gives way."""
+    """The message names the cause: no equilibrium modulus, losses in spite of one, a light plate."""
     plate = "half_thickness = 1e-3, waves = 'constant'"
     reasons = {
         ("0", "waves = 'none'"): "without equilibrium modulus",
@@ -352,7 +352,7 @@ def test_velocity_beyond_the_numbers(sls):
 @pytest.mark.parametrize("waves", ["constant", "relaxing", "frozen", "hereditary"])
 @pytest.mark.parametrize("thickness, status", [(1e-3, None), (3e-4, "no_separation")])
 def test_plate_too_light(sls, waves, thickness, status):
-    """It runs away from the sphere, whatever time it is given."""
+    """It moves away from the sphere, at any end time."""
     sets = ["--set", f"plate.waves={waves}", "--set", f"plate.half_thickness={thickness}"]
     done = sls("run", "case.nml", *sets, "--print", "status")
     assert done.out.strip() in ({status} if status else {"sticks", "no_separation"})

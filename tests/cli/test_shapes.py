@@ -1,4 +1,4 @@
-"""Bodies that are no spheres: closed forms, scaling laws, both methods, and what is refused."""
+"""Bodies that are not spheres: closed forms, scaling laws, both methods, refusals."""
 
 import math
 
@@ -66,7 +66,7 @@ def test_elastic_cone(vcor):
 
 @pytest.mark.parametrize("power", [1.5, 3, 4.5])
 def test_branch_point_of_a_profile(vcor, power):
-    """F = K s^(1 + 1/p) is no polynomial in sqrt(t) at first, which a rebound feels."""
+    """F = K s^(1 + 1/p) is not a polynomial in sqrt(t) at first, which affects a rebound."""
     sphere = f"shape = 'power', profile_coefficient = {0.3 * 330**power}"
     sphere += f", profile_power = {power}, mass = 0.002"
     rubber = "model = 'prony', equilibrium_modulus = 2.5e7, moduli = 3.9e7, 5e7, 1.2e7"
@@ -90,7 +90,7 @@ def test_branch_point_of_a_profile(vcor, power):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("plate", [0.0, 0.3])
 def test_damped_punch(vcor, method, plate):
-    """A punch on a spring and a dashpot, on a plate that gives way at once: a damped oscillator.
+    """A punch on a spring and a dashpot, on a plate that moves at once: a damped oscillator.
 
     F = k s + c s' with s = z - U, U' = a F: eta = F/m is what slows both, s'' = -F/m - a F'.
     """

@@ -1,4 +1,4 @@
-"""Shear moduli: E = 2 (1 + nu) G, once and in every place that knows moduli."""
+"""Shear moduli: E = 2 (1 + nu) G, once and in every place that has moduli."""
 
 import pytest
 from program import INPUT

@@ -48,7 +48,7 @@ def cor(vcor, *words):
 
 def test_is_the_series_its_points_are_from(vcor):
     """The interpolation is within 5e-5 of the modulus with 25 points to the decade, and within a
-    third of that with 50; the restitution feels a fraction of it."""
+    third of that with 50; the restitution changes by a fraction of it."""
     fine = ["--set", "solver.method=direct", "--set", "solver.accuracy=1e-7"]
     vcor.write(HEAD + MODELS["prony"])
     exact = cor(vcor, *fine)
@@ -379,7 +379,7 @@ def test_note_on_data_that_do_not_cover_the_contact(table):
     assert "note: the data of the plate (data.csv) begin at 1.0E-04 s" in out
     assert re.search(r"begin at 1.0E-04 s: [0-9.]+ % of the contact lies before", out)
     assert out.count("note: the data") == 1
-    # beside bare numbers, too
+    # with bare numbers, too
     bare = table("run", "case.nml", "--print", "cor")
     assert bare.code == 0
     assert "note: case.nml: the data of the plate (data.csv) begin at 1.0E-04 s" in bare.err

@@ -120,7 +120,7 @@ def test_shifted_constants(vcor, model, method):
     "models", [("sls", "mittag_leffler"), ("power_law", "cerf"), ("cerf", "sls")], ids="-".join
 )
 def test_two_shifted_bodies(vcor, models, pair):
-    """Each body goes its own way; the contact modulus is that of both."""
+    """Each body has its own shift; the contact modulus is that of both."""
     temperature = 305.0
     laws = ("wlf", "arrhenius")
     more = f"&contact pair = '{pair}', law = 'receding' /\n"
@@ -372,7 +372,7 @@ def test_the_band_of_times_is_shifted(vcor):
 
 
 def test_another_table_is_another_case(vcor):
-    """The file of an unfinished sweep knows the table it was made with."""
+    """The file of an unfinished sweep has a check sum of its table."""
     vcor.write(
         case(shifted("sls", "table"))
         + "&sweep parameter = 'impact.temperature', values = 280, 290, 300 /\n"

@@ -15,7 +15,7 @@ GRAVITY = 9.80665
 
 
 def numbers(vcor, text, *words):
-    """The columns of an impact, those that are no texts as numbers."""
+    """The columns of an impact, those that are not texts as numbers."""
     vcor.write(text)
     values = vcor.numbers("case.nml", *words)
     return {name: value if name in TEXTS else float(value) for name, value in values.items()}
@@ -99,7 +99,7 @@ def test_plate_that_could_bend(vcor):
 
 
 def test_energy_from_nothing(vcor):
-    """A plate much lighter than the sphere gives energy by waves that are no solution: never good, and said so."""
+    """A plate much lighter than the sphere gives energy by waves that are not a solution: never good, with a message."""
     row = numbers(vcor, GLASS)
     lost = row["initial_energy"] * (1 - row["resilience"])
     assert row["energy_loss"] == pytest.approx(lost, rel=1e-9)

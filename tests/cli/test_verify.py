@@ -270,7 +270,7 @@ def test_no_digits_that_cannot_be_trusted(vcor):
 
 
 def test_scheme_of_the_case(vcor):
-    """The paper's scheme is shown beside the others, as far off as it is."""
+    """The paper's scheme is shown next to the others, as far off as it is."""
     out = vcor.succeeds("verify", PAPER / "sls_printed.nml")
     found = solutions(out)
     assert found[0][0] == "case: adams_bashforth"

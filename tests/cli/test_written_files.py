@@ -1,4 +1,4 @@
-"""Files on their way: complete or not there, and nobody else's are touched."""
+"""Files while they are written: complete or not there; other files are not changed."""
 
 import os
 import resource

@@ -37,7 +37,7 @@ def plain(page):
 
 
 def anchors(page):
-    """What a link may have after #: the headings as GitHub names them."""
+    """Anchors of links: the headings as GitHub names them."""
     found = set()
     for title in re.findall(r"^#+ (.*)$", plain(page), re.MULTILINE):
         name = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
@@ -76,7 +76,7 @@ def test_the_index_names_every_page():
 
 
 def test_modules_and_files_that_pages_name():
-    """What a page says of the sources is there."""
+    """Modules and files that a page names exist."""
     modules = set()
     for path in [*(ROOT / "src").rglob("*.[fF]90"), *(ROOT / "app").glob("*.f90")]:
         modules |= set(re.findall(r"^module (\w+)", path.read_text(), re.MULTILINE))

@@ -1,4 +1,4 @@
-"""What the program knows of itself, and the pages that scripts/manual.py makes of it."""
+"""The program's description of itself, and the pages that scripts/manual.py makes from it."""
 
 import json
 import os

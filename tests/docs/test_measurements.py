@@ -1,4 +1,4 @@
-"""The page beside measurements: its script makes its tables and figures again."""
+"""The page of measurements: its script makes its tables and figures again."""
 
 import re
 import subprocess

@@ -31,10 +31,10 @@ program ranks
    call check(differs(this_rank()), "different numbers")
 
    call share_error(error)
-   call check(.not. allocated(error), "nobody has an error")
+   call check(.not. allocated(error), "no rank has an error")
    if (this_rank() == last) call raise(error, error_file, "injected failure")
    call share_error(error)
-   call check(allocated(error), "all ranks know of the failure")
+   call check(allocated(error), "all ranks have the error")
    call check(error%code == error_file, "its code")
    if (this_rank() == 0) then
       call check_text(error%message(:5), "rank ", "where it was")

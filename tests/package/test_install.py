@@ -108,7 +108,7 @@ def test_completion_is_where_shells_look(prefix, packages):
 
 
 def test_no_path_of_the_build(build, prefix):
-    """What was installed knows neither sources nor build."""
+    """The installed files contain no path of the sources or the build."""
     for path, text in texts(prefix).items():
         assert str(ROOT) not in text, path
         assert str(build) not in text, path

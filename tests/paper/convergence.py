@@ -27,7 +27,7 @@ FLOOR, MARCHING_FLOOR = 1e-9, 2e-8
 
 @dataclass(frozen=True)
 class Series:
-    """COR of one impact by one scheme, over the step."""
+    """COR of one impact by one scheme, against the step."""
 
     name: str
     settings: str

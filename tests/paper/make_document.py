@@ -95,7 +95,7 @@ def convergence_table(group):
 
 
 def velocity_table():
-    """COR of the SLS plate over the velocity, for the rates of Fig. 4."""
+    """COR of the SLS plate against the velocity, for the rates of Fig. 4."""
     velocities = [1, 2, 5, 10, 20, 30]
     lines = []
     for beta in (600, 1200, 2400, 4800):
@@ -235,7 +235,7 @@ def axes():
 
 
 def figure():
-    """Errors over the step, both axes logarithmic, as SVG."""
+    """Errors against the step, both axes logarithmic, as SVG."""
     parts = axes()
     for i, series in enumerate(convergence.ALL):
         shape, dashes, colour = STYLES[i]
@@ -257,7 +257,7 @@ def figure():
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
         f'viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">\n'
-        "<title>Error of the coefficient of restitution over the time step</title>\n"
+        "<title>Error of the coefficient of restitution against the time step</title>\n"
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>\n{body}\n</svg>\n'
     )
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Make layers.json: quasi-static impacts on layers that lie on a rigid base, and of the true sphere.
 
-    tests/reference/make_layers.py [--seed N] [--count N] [FILE]        default: layers.json beside it
+    tests/reference/make_layers.py [--seed N] [--count N] [FILE]        default: layers.json next to it
 
 Nothing is shared with vcor but the equations. The law of the layer is the Fredholm equation of the
 contact radius a with dense matrices: its kernel is summed over the wavenumbers, on Gauss nodes that

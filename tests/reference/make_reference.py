@@ -14,7 +14,7 @@ Checks (--check), by methods that share k(t) and alpha(t) with the first and not
 
 Usage:  make_reference.py [--check] [--laws] [--only TEXT] [--compare FILE.csv] [--output DIR]
 
-Without options it writes reference.csv and cases/NAME.nml beside itself.  Units are SI.
+Without options it writes reference.csv and cases/NAME.nml next to itself.  Units are SI.
 """
 
 import argparse

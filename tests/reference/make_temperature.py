@@ -1,7 +1,7 @@
 """Reference impacts at temperatures: temperature.txt, which tests/unit/test_impacts.f90 reads.
 
 The case has the shift and the temperature; what is expected of it comes from impact_solver.py, which
-knows no temperature: here the constants of each model are shifted by hand, times by a_T and moduli
+has no temperature: here the constants of each model are shifted by hand, times by a_T and moduli
 by b_T. Between the points of a table log10 a_T is scipy's PchipInterpolator, after F. N. Fritsch and
 J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
 

@@ -34,7 +34,7 @@ LEVELS = ["good", "caution", "outside"]
 LIMITS = {"contact_ratio": (0.4, 0.8), "thickness_ratio": (0.1, 0.3),
           "plate_wave_number": (0.7, 1.3), "deflection_ratio": (0.3, 1.0),
           "weight_ratio": (0.01, 0.1), "half_space_loss": (0.01, 0.1)}
-# a sphere that gives way: what of it is held against the limits of contact_ratio
+# a sphere that deforms: its share of contact_ratio is compared with the limits
 SPHERE_WEIGHT = 3.0
 
 

@@ -126,9 +126,9 @@ contains
       call check_close(outcome%hysteresis_energy, 1.172_wp, 0.5e-3_wp, "butyl: the paper's loss")
       call check_relative(outcome%hysteresis_energy, 1.17184_wp, sixth_digit, "butyl: loss")
       call check_close(outcome%min_frequency, 8101.8_wp, 0.05_wp, "butyl: lowest frequency")
-      ! what the capped kernel leaves out, as the estimate knows it
+      ! what the capped kernel leaves out, as in the estimate
       call check(abs(outcome%cor - 0.2114372812_wp) <= 1.5_wp*outcome%cor_error &
-         .and. outcome%cor_error < 0.01_wp, "butyl: the estimate knows of the capped kernel")
+         .and. outcome%cor_error < 0.01_wp, "butyl: the estimate includes the capped kernel")
    end subroutine test_butyl
 
    !> Prony's COR "about 24 % higher", deformations "11 % apart": frozen against relaxing
@@ -302,7 +302,7 @@ contains
          + coefficient*(firmness*u**2 + 2.0_wp*u*single + double)
    end function written_out
 
-   !> Kernel of the SLS over its firmness: k, or k' and k'' in form b
+   !> Kernel of the SLS divided by its firmness: k, or k' and k'' in form b
    pure function sls_kernel(form, time, term) result(k)
       !> Form of the force
       character(len=1), intent(in) :: form

@@ -156,7 +156,7 @@ contains
             wp)), wp), static_response(base, nu, 1.3_wp), 10.0_wp*slow**2, "slow waves are none")
       end do
       call check_close(static_response(base_bonded, nu, 0.0_wp), -1.0_wp, digits, &
-         "a layer that is bonded does not give way to a uniform pressure at rest")
+         "a bonded layer does not yield to a uniform pressure at rest")
       ! L - 1 = -y (3 - 4 q + 3 q^2)/(4 (1 - q)) + O(y^2), q = 3/13
       y = 1.0e-12_wp
       call check_relative(real(wave_response(base_half_space, nu, 0.0_wp, 1.0_wp, &
@@ -362,7 +362,7 @@ contains
       end do
    end subroutine test_elastic
 
-   !> Without inertia it is Ting's contact, by a solver that knows no rule of Ting
+   !> Without inertia it is Ting's contact, by a solver without Ting's rule
    subroutine test_static()
       type(impact_t) :: impact
       type(trajectory_t) :: trajectory
@@ -728,17 +728,17 @@ contains
       allocate (solver)
       call new_coupled(solver, solver_settings_t(end_time=1.0e-4_wp))
       call solver%solve(impact, trajectory, error)
-      call success(error, "an end time before the end is no error")
+      call success(error, "an end time before the end is not an error")
       call check(trajectory%status == contact_lasting, "a sheet keeps the sphere")
       call new_coupled(solver, solver_settings_t(end_time=1.0e-3_wp))
       call make_impact(impact, rubber(0.45_wp), base_half_space, 0.0_wp, 1.0_wp, 0.03_wp, &
          sphere(0.01_wp))
       call solver%solve(impact, trajectory, error)
-      call success(error, "an end time before the end is no error")
+      call success(error, "an end time before the end is not an error")
       call check(trajectory%status == contact_lasting, "the end time is before the end")
       call new_coupled(solver, solver_settings_t(end_time=1.0e-2_wp))
       call solver%solve(impact, trajectory, error)
-      call success(error, "an end time after the end is no error")
+      call success(error, "an end time after the end is not an error")
       call check(trajectory%status == contact_separated, "the end time is after the end")
    end subroutine test_no_end
 

@@ -623,9 +623,9 @@ contains
    end subroutine test_sample
 
    !> What moves is not stuck, whatever its force; what stands still is, if nothing pushes it: a
-   !> fluid in any case, a solid where the plate has gone with the sphere and the dent is gone
+   !> fluid in any case, a solid if the plate moved with the sphere and there is no indentation
    subroutine test_stuck()
-      real(wp), parameter :: mass = 2.0_wp, dent = 0.1_wp
+      real(wp), parameter :: mass = 2.0_wp, indentation = 0.1_wp
       type(trajectory_t) :: trajectory
       type(impact_t) :: fluid, solid
 
@@ -641,8 +641,8 @@ contains
       trajectory%state = 0.0_wp
       trajectory%last = 1
       trajectory%state(col_velocity, 0) = 1.0_wp
-      trajectory%state(col_indentation, 1) = dent
-      trajectory%state(col_sphere, 1) = dent
+      trajectory%state(col_indentation, 1) = indentation
+      trajectory%state(col_sphere, 1) = indentation
       call check(trajectory%is_stuck(fluid), "at rest without force")
       call check(.not. trajectory%is_stuck(solid), "a spring will push")
       trajectory%state(col_force, 1) = -1.0e-12_wp
@@ -653,7 +653,7 @@ contains
       trajectory%state(col_velocity, 1) = -0.3_wp
       call check(.not. trajectory%is_stuck(fluid), "motion is no less for a force that pulls")
       trajectory%state(:, 1) = 0.0_wp
-      trajectory%state(col_sphere, 1) = dent
+      trajectory%state(col_sphere, 1) = indentation
       call check(trajectory%is_stuck(solid), "in a plate that goes with the sphere")
    end subroutine test_stuck
 

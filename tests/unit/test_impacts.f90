@@ -106,7 +106,7 @@ contains
          honest_share*outcome(1)%cor_sphere_error, "what the first panel misses is stated")
    end subroutine test_missed_drift
 
-   !> The motion of a body with a profile r^2.5 is no series of integer powers at first, and the
+   !> The motion of a body with a profile r^2.5 is not a series of integer powers at first, and the
    !> rebound of a receding contact looks at the polynomials of the first panel
    subroutine test_profile()
       character(len=*), parameter :: text = &

@@ -264,7 +264,7 @@ contains
       call check_relative(hertz()*law%u(depth(2:)), expected(2:), accuracy, &
          "force of a true sphere")
       call check_relative(law%radius(hertz(), depth), a, accuracy, "its contact radius")
-      call check_relative(law%stiffening(depth(3)), 1.0_wp, accuracy, "a half space is no layer")
+      call check_relative(law%stiffening(depth(3)), 1.0_wp, accuracy, "a half space is not a layer")
       call check_relative(law%profile(hertz(), a), depth, accuracy, "its profile")
       call check(law%profile(hertz(), radius) > 1.0e100_wp, "there is nothing beyond its radius")
       call check(law%exceeds(1.2_wp*radius) .and. .not. law%exceeds(radius), &

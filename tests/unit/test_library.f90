@@ -245,7 +245,7 @@ contains
       call refused(error, error_input, "an empty contact modulus")
       call solve_impact(nothing, outcome, error)
       call refused(error, error_input, "an empty impact")
-      call check(outcome%status /= contact_separated, "what failed is no separation")
+      call check(outcome%status /= contact_separated, "a failure is not a separation")
       call problem%solve(trajectory, outcome, error)
       call refused(error, error_input, "an empty problem")
       call problem_of_case(problem, case, error)
@@ -302,7 +302,7 @@ contains
       call refused(error, error_file, "no folder for an HDF5 file")
       ! a plate of a tenth of a millimetre takes up the blow
       call override(case, 'plate.half_thickness=1e-4', error)
-      call success(error, "a thin plate is no error")
+      call success(error, "a thin plate is not an error")
       call problem%update(case, error)
       call success(error, "its impact is built")
       call solve_impact(problem%impact, outcome, error)

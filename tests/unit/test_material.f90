@@ -222,7 +222,7 @@ contains
       call check_close(abs(material%complex_modulus((2500.0_wp, 0.0_wp)) &
          - (equilibrium + 0.5_wp*relaxing)), 0.0_wp, 1.0e-6_wp, "half relaxed at s = beta^2")
       call material%exponentials(1.0e-3_wp, 1.0e-8_wp, terms)
-      call check(terms%error > 0.0_wp, "a CERF material is no sum of exponentials")
+      call check(terms%error > 0.0_wp, "a CERF material is not a sum of exponentials")
       call check(.not. material%elastic(), "it is not elastic")
    end subroutine test_cerf
 
@@ -259,7 +259,7 @@ contains
       call check(.not. ieee_is_finite(material%rate(0.0_wp)), "the rate at t = 0 is infinite")
       call check_close(material%rubbery(), 3.0_wp, 0.0_wp, "rubbery modulus of a power law")
       call material%exponentials(1.0e-3_wp, 1.0e-8_wp, terms)
-      call check(terms%error > 0.0_wp, "a power law is no sum of exponentials")
+      call check(terms%error > 0.0_wp, "a power law is not a sum of exponentials")
       call check(.not. material%elastic(), "it is not elastic")
    end subroutine test_power_law
 

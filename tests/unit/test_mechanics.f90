@@ -216,13 +216,13 @@ contains
          call check_relative(outcome%contact_time, usual%contact_time, tolerance, &
             "elastic contact: ive, contact time")
          call check(abs(outcome%residual_indentation) <= tolerance*outcome%max_indentation, &
-            "elastic contact: no dent is left")
+            "elastic contact: no indentation is left")
          call run(direct, impact, outcome)
          call check_close(outcome%cor, usual%cor, direct_tolerance, "elastic contact: direct, cor")
       end do
    end subroutine test_reversible
 
-   !> A rebound feels the approach between the ends of its panels, too, which is no floor for its
+   !> The approach between the ends of its panels affects a rebound, too, and is not a floor for its
    !> error: the stated one is what was asked for
    subroutine test_tight_accuracy()
       integer, parameter :: waves(4) = [waves_none, waves_constant, waves_relaxing, &

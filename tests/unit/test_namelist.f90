@@ -207,7 +207,7 @@ contains
       call refuses_value("0x10", "'0x10', expected a number")
       call refuses_value("1,5", "more than one value|'1,5'|decimal point, not a comma")
       call refuses_value("5.0 6.0", "more than one value|'5.0 6.0'")
-      call refuses_value("2*5.0", "more than one value: 2*5.0 is no product|5.0 given 2 times")
+      call refuses_value("2*5.0", "more than one value: 2*5.0 is not a product|5.0 given 2 times")
       call refuses_value("3*", "repeat count without a value")
       call refuses_value("0*5.0", "repeat count that is not a positive number")
       call refuses_value("99999999999*5.0", "repeat count")
@@ -258,7 +258,7 @@ contains
       call refuses_list("density(1) = 1.0", "density: |single value")
    end subroutine test_list_errors
 
-   !> Files that are no case files
+   !> Files that are not case files
    subroutine test_files()
       type(case_t) :: case
       type(error_t), allocatable :: error

@@ -36,7 +36,7 @@ program test_reference
    !> Rounding errors of the outcome, through the eigenvectors of collocation; of some weight at the
    !> accuracy 1e-10 only
    real(wp), parameter :: rounding = 1.0e-11_wp
-   !> An estimate below a tenth of the error is no estimate
+   !> An estimate below a tenth of the error is not an estimate
    real(wp), parameter :: too_small = 10.0_wp
    !> An estimate of more than a hundred times the error is none, either; below a tenth of the
    !> accuracy asked for, rounding aside, it misleads nobody

@@ -429,7 +429,7 @@ contains
          call new_solver(solver, settings, impact(1), error)
          call success(error, trim(method(i))//" is built")
          call solver%solve(impact(1), trajectory, error)
-         call success(error, trim(method(i))//": a short time is no error")
+         call success(error, trim(method(i))//": a short time is not an error")
          outcome = evaluate(impact(1), trajectory)
          call check(outcome%status == contact_lasting, &
             & trim(method(i))//": but its own status")

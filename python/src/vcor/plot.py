@@ -70,14 +70,14 @@ _HATCHES = {"outside": ("/////", "outside of the model's validity"),
 _LETTERS, _BESIDE = 15.0, 0.75
 #: Colours of a map, light enough for lines and hatching over them
 _SHADES = LinearSegmentedColormap.from_list("", mpl.colormaps["Blues"](np.linspace(0.0, 0.7, 64)))
-#: Colour of the points of a map without a result: grey, which is no level
+#: Colour of the points of a map without a result: grey, which is not a level
 _NOTHING = "0.8"
 _Range = tuple[float | None, float | None]
 
 
 @dataclass
 class _Wishes:
-    """What a figure shows, and how."""
+    """Contents and style of a figure."""
 
     results: list[Result]
     #: Whether the user gave the texts of the results
@@ -234,7 +234,7 @@ def _check_axes(
     if np.ndim(levels) == 0:
         whole(levels, "levels", 2, _MOST_LEVELS)
     elif not np.isfinite(numbers(levels, "levels")).all():
-        raise UsageError("found a level that is no finite number, expected such as 0.2,0.5")
+        raise UsageError("found a level that is not a finite number, expected such as 0.2,0.5")
 
 
 def _courses(results: list[Result]) -> list[dict[str, Any]]:
@@ -262,7 +262,7 @@ def _courses(results: list[Result]) -> list[dict[str, Any]]:
 
 
 def _history(wishes: _Wishes) -> Figure:
-    """Indentation, velocity and force over time, each over its largest value."""
+    """Indentation, velocity and force against time, each divided by its largest value."""
     courses = _courses(wishes.results)
     factor, unit = _scale("s", *[course["time"] for course in courses])
     names = {
@@ -357,7 +357,7 @@ def _moduli(wishes: _Wishes) -> Figure:
         both = [result.group("relaxation", needed, "time", columns[0]),
                 result.group("dynamic", needed, "frequency", *columns[1:])]  # fmt: skip
         ends = [float(both[0].attrs.get(k, math.nan)) for k in ("contact_time", "min_frequency")]
-        # what does not relax is no curve
+        # an elastic material has no curves
         loss = both[1].loss_modulus
         names = [name for name in loss.material.values if (loss.sel(material=name) > 0).any()]
         if not names:

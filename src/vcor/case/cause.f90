@@ -1,6 +1,6 @@
 !> The keys, values and lines behind an error of a constructor
 !>
-!> Constructors know arguments, not keys: an error names them in `error%about`, and the material in
+!> Constructors have arguments, not keys: an error names them in `error%about`, and the material in
 !> `error%item`. The keys have the names of the arguments.
 module vcor_case_cause
    use vcor_case_case, only : address_t, case_t, entry_t

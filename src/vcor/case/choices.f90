@@ -1,5 +1,5 @@
 !> Meanings of the words that a key can have, and the words of the field that lead to them: what
-!> `vcor help` and the reference of the input say beside the catalogue
+!> `vcor help` and the reference of the input say in addition to the catalogue
 module vcor_case_choices
    implicit none
    private
@@ -16,7 +16,7 @@ module vcor_case_choices
       character(len=112) :: meaning
    end type choice_t
 
-   !> A term of the field that is no word of input or output
+   !> A term of the field that is not a word of input or output
    type :: topic_t
       !> Its names, lower case, between blanks
       character(len=64) :: words
@@ -34,7 +34,7 @@ module vcor_case_choices
       choice_t('sphere.shape', 'punch', 'a flat cylinder of this punch_radius'), &
       choice_t('sphere.shape', 'power', 'a body of revolution z = C r^p'), &
       choice_t('plate.waves', 'none', &
-         'the plate only dents: a half space, a second sphere, a layer'), &
+         'no waves: a half space, a second sphere, a layer'), &
       choice_t('plate.waves', 'constant', &
          'thin plate, alpha(0) times the impulse: exact if elastic (Zener 1941)'), &
       choice_t('plate.waves', 'relaxing', "thin plate, alpha(t) times the impulse: the paper's"), &
@@ -70,7 +70,7 @@ module vcor_case_choices
          'Williams, Landel and Ferry: -C1 (T - T_ref)/(C2 + T - T_ref)'), &
       choice_t('material.shift', 'arrhenius', &
          'activation energy: ln a_T = (E_a/R)(1/T - 1/T_ref)'), &
-      choice_t('material.shift', 'table', 'log10 a_T over T from shift_file'), &
+      choice_t('material.shift', 'table', 'log10 a_T against T, from shift_file'), &
       choice_t('solver.method', 'auto', 'the method that suits the impact'), &
       choice_t('solver.method', 'ive', &
          'internal variables of a sum of exponentials, by collocation'), &

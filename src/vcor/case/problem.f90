@@ -69,7 +69,7 @@ module vcor_case_problem
       class(solver_t), allocatable :: solver
       !> Settings of the solution
       type(solver_settings_t) :: settings
-      !> Data for the measures of validity beside the impact
+      !> Data for the measures of validity, in addition to the impact
       type(surroundings_t) :: surroundings
       !> What the impact reads of the case
       type(reading_t) :: reading

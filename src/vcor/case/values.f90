@@ -222,7 +222,7 @@ contains
          if (n == 1) then
             ! meant as a product, which namelists do not have
             message = message//': '//integer_text(values(1)%repeats)//'*'//shortened(first) &
-               //' is no product but '//shortened(first)//' given ' &
+               //' is not a product but '//shortened(first)//' given ' &
                //integer_text(values(1)%repeats)//' times, expected '//wanted(key)
             return
          end if
@@ -258,7 +258,7 @@ contains
       character(len=*), intent(in) :: number
       !> Text after it
       character(len=*), intent(in) :: unit
-      !> Such as `; give 70e9, in Pa`; empty if it is no unit of the key
+      !> Such as `; give 70e9, in Pa`; empty if it is not a unit of the key
       character(len=:), allocatable :: hint
 
       character(len=*), parameter :: prefixes = 'numckMGT'

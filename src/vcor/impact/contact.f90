@@ -123,7 +123,7 @@ contains
             plate%plane_strain_factor(), error)
       else if (max(sphere%viscosity, plate%viscosity) > 0.0_wp) then
          call raise(error, error_input, 'a material with a viscosity has no meaning in Eq. (1) ' &
-            //'beside another deformable material: make one body rigid or both of one material, ' &
+            //'with another deformable material: make one body rigid or both of one material, ' &
             //"or use contact.pair = 'series'", about='pair viscosity')
       else
          allocate (self%first, source=sphere)
@@ -360,7 +360,7 @@ contains
       !> The sum; `terms%error` is its estimated relative error
       type(exponential_sum_t), intent(out) :: terms
 
-      ! error over the requested accuracy from which a fit is tried, and the part of the window
+      ! ratio of error and requested accuracy from which a fit is tried, and the part of the window
       ! within which its fastest term has decayed
       real(wp), parameter :: far = 30.0_wp, early = 0.01_wp
       type(exponential_sum_t) :: one

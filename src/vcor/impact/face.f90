@@ -136,7 +136,7 @@ contains
       class(face_t), intent(in) :: self
       !> Laplace variable [1/s]
       complex(wp), intent(in) :: s
-      !> Displacement over force [m/N]; 0 unless the base is `base_thin`
+      !> Displacement divided by force [m/N]; 0 unless the base is `base_thin`
       complex(wp) :: compliance
 
       compliance = 0.0_wp
@@ -145,7 +145,7 @@ contains
          /(s*sqrt(self%plate_modulus(s)))
    end function drift
 
-   !> Laplace variable over the speed of shear waves, c_s^2 = Q'_b (1 - nu)/(2 rho)
+   !> Laplace variable divided by the speed of shear waves, c_s^2 = Q'_b (1 - nu)/(2 rho)
    elemental function per_shear_speed(self, s) result(p)
       class(face_t), intent(in) :: self
       !> Laplace variable [1/s]
@@ -174,7 +174,7 @@ contains
       class(face_t), intent(in) :: self
       !> Wavenumbers [1/m], > 0
       real(wp), intent(in) :: k(:)
-      !> Laplace variable over the speed of shear waves [1/m], of `per_shear_speed`
+      !> Laplace variable divided by the speed of shear waves [1/m], of `per_shear_speed`
       complex(wp), intent(in) :: p
       !> L - 1 [-], same shape
       complex(wp), intent(out) :: excess(:)

@@ -42,7 +42,7 @@ module vcor_impact_law
       real(wp) :: start_exponent = hertz
       !> Duration of an elastic impact in units of `time_scale` [-]
       real(wp) :: contact_time = 3.2180654597190435_wp
-      !> Largest indentation of an elastic impact over velocity times `time_scale`,
+      !> Largest indentation of an elastic impact divided by velocity times `time_scale`,
       !> ((n + 1)/2)^(1/(n + 1)) [-]
       real(wp) :: depth = 1.0933620739432781_wp
       !> Whether the integral ends at the time when the growing contact was as small as now: exact
@@ -53,7 +53,7 @@ module vcor_impact_law
       type(law_table_t), allocatable, private :: table
       !> Numbers that the table is for, the first one its base
       real(wp), private :: about(6) = 0.0_wp
-      !> Unit of length of the table [m], and half-space contact radius in it over s^(n-1)
+      !> Unit of length of the table [m], and half-space contact radius in it divided by s^(n-1)
       !> [m^(1-n)]
       real(wp), private :: length = 0.0_wp, scale = 0.0_wp
       !> Radius of a true sphere [m]; 0: another body, the sphere as a paraboloid
@@ -329,7 +329,7 @@ contains
       end if
    end function radius
 
-   !> Force over that on a half space at the same indentation, if the law is that of a layer
+   !> Force divided by that on a half space at the same indentation, if the law is that of a layer
    pure function stiffening(self, s) result(ratio)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m], > 0

@@ -63,7 +63,7 @@ contains
    !> f and x f' at a given x
    pure subroutine stiffening(self, x, f, rise)
       class(law_table_t), intent(in) :: self
-      !> Contact radius on a half space over the length [-], >= 0
+      !> Contact radius on a half space divided by the length [-], >= 0
       real(wp), intent(in) :: x
       !> f [-]
       real(wp), intent(out) :: f
@@ -92,7 +92,7 @@ contains
    !> g at a given x, beyond the table that at its end
    pure function widening(self, x) result(g)
       class(law_table_t), intent(in) :: self
-      !> Contact radius on a half space over the length [-], >= 0
+      !> Contact radius on a half space divided by the length [-], >= 0
       real(wp), intent(in) :: x
       !> g [-]
       real(wp) :: g

@@ -35,8 +35,8 @@ module vcor_impact_layer_law
 
    public :: profile_t, layer_t, lay
 
-   !> Largest contact radius of a table, over the thickness of a layer and over the radius of a true
-   !> sphere, which is then deeper than its radius in a half space
+   !> Largest contact radius of a table, in units of the thickness of a layer and of the radius of a
+   !> true sphere, which is then deeper than its radius in a half space
    real(wp), parameter :: widest = 20.0_wp, deepest = 0.85_wp
 
    !> Shape of the body
@@ -112,7 +112,7 @@ contains
       end if
    end function height
 
-   !> Slope over height, x h'(x)/h(x)
+   !> Slope divided by height, x h'(x)/h(x)
    pure function steepness(self, x) result(slope)
       class(profile_t), intent(in) :: self
       !> Distance from the axis [-], > 0
@@ -185,8 +185,8 @@ contains
       call law%resize(factor, length, profile%radius)
    end subroutine lay
 
-   !> Tabulate the law: f is the force over that on a half space at the same indentation, where the
-   !> contact radius is x = s^(1/p), and g the contact radius over x
+   !> Tabulate the law: f is the ratio of the force to that on a half space at the same indentation,
+   !> where the contact radius is x = s^(1/p), and g the contact radius divided by x
    subroutine tabulate(table, layer, profile, error)
       type(law_table_t), intent(out) :: table
       type(layer_t), intent(in) :: layer
@@ -226,8 +226,8 @@ contains
       type(equation_t), intent(in) :: equation
       !> Ends of the panels of the contact radius, shape (0:m)
       real(wp), intent(in) :: ends(0:)
-      !> Coefficients of indentation and force over those of a half space with the same contact
-      !> radius, shape (points, 2, m)
+      !> Coefficients of indentation and force, in units of those of a half space with the same
+      !> contact radius, shape (points, 2, m)
       real(wp), intent(in) :: piece(:, :, :)
 
       real(wp), allocatable :: f(:, :), g(:, :)
@@ -371,8 +371,8 @@ contains
       end associate
    end function coupling
 
-   !> Indentation and force at a contact radius, each over that of a half space at this radius; for
-   !> a punch 1 and the force over that of a half space at this indentation
+   !> Indentation and force at a contact radius, each in units of that of a half space at this
+   !> radius; for a punch 1 and the force divided by that of a half space at this indentation
    subroutine press(self, a, indentation, force, error)
       class(equation_t), intent(in) :: self
       !> Contact radius [-], > 0

@@ -40,7 +40,7 @@ module vcor_impact_outcome
       real(wp) :: time_of_max_force = none
       !> Indentation at t0 [m]
       real(wp) :: residual_indentation = none
-      !> Residual over largest indentation [-]
+      !> Ratio of residual to largest indentation [-]
       real(wp) :: residual_ratio = none
       !> Hysteresis W_h = int F ds [J]
       real(wp) :: hysteresis_energy = none
@@ -78,24 +78,25 @@ module vcor_impact_outcome
       real(wp) :: rebound_height = none
       !> Largest radius of the contact [m]
       real(wp) :: contact_radius = none
-      !> Contact radius over the smaller of Hertz' radius and the sphere's [-]
+      !> Contact radius divided by the smaller of Hertz' radius and the sphere's [-]
       real(wp) :: contact_ratio = none
-      !> Contact radius over the radius of the sphere, times the sphere's share of the compliance;
-      !> added up for two spheres [-]
+      !> Contact radius divided by the radius of the sphere, times the sphere's share of the
+      !> compliance; added up for two spheres [-]
       real(wp) :: sphere_ratio = none
-      !> Contact radius over thickness of the plate, times the plate's share of the compliance [-]
+      !> Contact radius divided by thickness of the plate, times the plate's share of the
+      !> compliance [-]
       real(wp) :: thickness_ratio = none
-      !> Contact radius over the thickness of a layer on a base [-]
+      !> Contact radius divided by the thickness of a layer on a base [-]
       real(wp) :: layer_ratio = none
-      !> Force over that on a half space at the largest indentation of a layer on a base [-]
+      !> Force divided by that on a half space at the largest indentation of a layer on a base [-]
       real(wp) :: layer_stiffening = none
       !> Thickness times the wavenumber of bending waves at the frequency pi/t0 [-]
       real(wp) :: plate_wave_number = none
       !> Distance of the nearest edge from which this wave returns at t0 [m]
       real(wp) :: needed_extent = none
-      !> Largest displacement of the plate over its thickness [-]
+      !> Largest displacement of the plate divided by its thickness [-]
       real(wp) :: deflection_ratio = none
-      !> Weight of the sphere over the largest force [-]
+      !> Weight of the sphere divided by the largest force [-]
       real(wp) :: weight_ratio = none
       !> Mean pressure at the time of the largest force [Pa]
       real(wp) :: mean_pressure = none

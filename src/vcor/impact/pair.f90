@@ -7,7 +7,7 @@
 !>
 !> is a geometric series whose powers are sums of exponentials again: a single rate l gives the
 !> rates l, 2 l, 3 l ... X is largest at t = 0, r = sum B_i/c, and n orders leave a remainder of
-!> r^n. A polymer beside steel has r of 1e-4 to 1e-2.
+!> r^n. A polymer on steel has r of 1e-4 to 1e-2.
 !>
 !> All products of order k add up to r^k at t = 0, so what is left out is known exactly. Relative to
 !> E' it counts at most (1 + r) c/B(t) times.
@@ -37,8 +37,8 @@ module vcor_impact_pair
 
    !> Maximum number of exponentials: each takes 1 us per impact; fitting a hundred takes 6 ms
    integer, parameter :: most = 400
-   !> Times over the window up to which the modulus is integrated. The modulus may be singular at 0
-   !> and is smooth in the logarithm of time afterwards
+   !> Times, in units of the window, up to which the modulus is integrated. The modulus may be
+   !> singular at 0 and is smooth in the logarithm of time afterwards
    real(wp), parameter :: ends(*) = [1.0e-4_wp, 3.0e-4_wp, 1.0e-3_wp, 3.0e-3_wp, 0.01_wp, 0.03_wp, &
       0.1_wp, 0.3_wp, 1.0_wp]
    !> Index in `ends` of the time from which values of the fit count; before, only its integral
@@ -226,8 +226,8 @@ contains
       real(wp), intent(in) :: window
       !> Modulus at `time` times the window [Pa], >= 0, shape (n)
       real(wp), intent(in) :: modulus(:)
-      !> The sum; its moduli may be negative. Its error is the larger of that which an impact feels,
-      !> see `error_of_integral`, and that of the integral at earlier times
+      !> The sum; its moduli may be negative. Its error is the larger of the one that affects an
+      !> impact, see `error_of_integral`, and that of the integral at earlier times
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp) :: moduli(size(self%rate)), integrals(size(ends)), excess(checked), mean
@@ -255,14 +255,14 @@ contains
          excess(i) = terms%integral(ends(i)*window) - integrals(i)*window
       end do
       terms%moduli(n) = -excess(checked)*terms%rates(n)
-      ! what the impulse feels of the error at earlier times
+      ! effect of the error at earlier times on the impulse
       excess = abs(excess - excess(checked))/(integrals(checked)*window)
       terms%error = max(terms%error, maxval(excess))
    end subroutine fit
 
-   !> Error that an impact feels. The force is the integral of the modulus with a smooth rate, and
+   !> Error that affects an impact. The force is the integral of the modulus with a smooth rate, and
    !> the error of the modulus oscillates, so what counts is the error of the integral since the
-   !> time from which values count. Loading and unloading may feel it with different signs, hence
+   !> time from which values count. It may have different signs in loading and unloading, hence
    !> the factor `integral_felt`; the error measured was never more than twice this estimate where
    !> it was above rounding
    pure function error_of_integral(self, deviation, sample, early) result(error)
@@ -294,15 +294,15 @@ contains
    !> Moduli of the rates, with the number of rates of the least cost
    pure subroutine find_moduli(self, sample, early, moduli, n, error)
       type(signed_fit_t), intent(in) :: self
-      !> Modulus at the samples over its mean, shape (samples)
+      !> Modulus at the samples divided by its mean, shape (samples)
       real(wp), intent(in) :: sample(:)
       !> Integral of the modulus up to the time from which values count, over the mean modulus
       real(wp), intent(in) :: early
-      !> Moduli over the mean, shape (rates)
+      !> Moduli divided by the mean, shape (rates)
       real(wp), intent(out) :: moduli(:)
       !> Number of rates used
       integer, intent(out) :: n
-      !> Error that an impact feels
+      !> Error that affects an impact
       real(wp), intent(out) :: error
 
       real(wp), dimension(size(self%rate)) :: right, x, late

@@ -73,7 +73,7 @@ contains
       real(wp), intent(in) :: thickness
       !> Wavenumber k [1/m], > 0
       real(wp), intent(in) :: k
-      !> Laplace variable over the speed of shear waves [1/m], real part > 0
+      !> Laplace variable divided by the speed of shear waves [1/m], real part > 0
       complex(wp), intent(in) :: p
       !> L - 1 [-]
       complex(wp) :: excess

@@ -191,7 +191,7 @@ contains
    !> Whether all motion has decayed in contact at the last node, for good: the remaining energy
    !> cannot cause a noticeable rebound. A contact with an equilibrium modulus, however soft, is
    !> momentarily at rest at its largest indentation; it sticks only if a plate has absorbed the
-   !> impact and no dent is left
+   !> impact and no indentation is left
    pure function is_stuck(self, impact)
       class(trajectory_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -200,7 +200,7 @@ contains
 
       ! a rebound with all of this energy has a coefficient of restitution of 1e-7
       real(wp), parameter :: negligible = 1.0e-14_wp
-      ! indentation over displacement of the sphere that counts as no dent
+      ! indentation divided by displacement of the sphere that counts as no indentation
       real(wp), parameter :: no_dent = 1.0e-3_wp
 
       associate (now => self%state(:, self%last), first => self%state(:, 0))

@@ -44,7 +44,7 @@ module vcor_impact_validity
       ! Hertz' force against Sneddon 1965, doi:10.1016/0020-7225(65)90019-4, for a rigid sphere: 1.6
       ! % too high at 0.4, 6.9 % at 0.8, 10 % at 0.95; or sphere_weight*sphere_ratio, if larger
       threshold_t('contact_ratio', 0.4_wp, 0.8_wp), &
-      ! force on a layer over that on a half space at the same indentation (`layer_law`): sliding
+      ! ratio of the forces on a layer and on a half space, same indentation (`layer_law`): sliding
       ! 1.079 at 0.1 and 1.264 at 0.3, bonded with nu = 0.5 1.124 and 1.440; a free plate is softer
       threshold_t('thickness_ratio', 0.1_wp, 0.3_wp), &
       ! Rayleigh and Lamb's layer takes 8 % more energy than a thin plate at 0.7, a third more at
@@ -55,7 +55,7 @@ module vcor_impact_validity
       threshold_t('needed_extent', 0.6_wp, 1.0_wp), &
       ! stretching increases the bending stiffness by 0.445 times its square
       threshold_t('deflection_ratio', 0.3_wp, 1.0_wp), &
-      ! the weight over the force that reverses the motion
+      ! the weight divided by the force that reverses the motion
       threshold_t('weight_ratio', 0.01_wp, 0.1_wp), &
       ! over the yield strength: first yield, and full plasticity of the contact, Johnson, Contact
       ! Mechanics (1985), doi:10.1017/CBO9781139171731, sections 6.1 and 6.2
@@ -68,8 +68,8 @@ module vcor_impact_validity
       threshold_t('energy_loss', 1.0_wp, 1.0_wp)]
 
    !> Factor of `sphere_ratio` for the thresholds of contact_ratio. A deformable sphere is not a
-   !> half space: its dent is smaller by 0.5 a/r, so the contact is 4 % shorter at a/r = 0.13 and 10
-   !> % at 0.27, as on a plate of thickness_ratio 0.1 and 0.3
+   !> half space: its indentation is smaller by 0.5 a/r, so the contact is 4 % shorter at a/r = 0.13
+   !> and 10 % at 0.27, as on a plate of thickness_ratio 0.1 and 0.3
    real(wp), parameter :: sphere_weight = 3.0_wp
 
    !> Properties outside the impact that the measures need; NaN if unknown

@@ -169,7 +169,7 @@ contains
       end associate
    end subroutine read_statement
 
-   !> Whether a section is that of a whole list; f90nml can be told to write such sections
+   !> Whether a section is that of a whole list; f90nml has an option to write such sections
    pure function is_whole(section, n) result(yes)
       !> Text in the parentheses
       character(len=*), intent(in) :: section

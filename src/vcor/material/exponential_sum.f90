@@ -11,7 +11,7 @@ module vcor_material_exponential_sum
    real(wp), parameter :: same_rate = 1.0e-13_wp
 
    !> E(t) = equilibrium + sum_k moduli(k) exp(-rates(k) t) + viscosity delta(t),
-   !> Eq. (17) of Green's paper with a dashpot beside the Maxwell elements
+   !> Eq. (17) of Green's paper with a dashpot parallel to the Maxwell elements
    type :: exponential_sum_t
       !> Equilibrium modulus [Pa], >= 0
       real(wp) :: equilibrium = 0.0_wp

@@ -113,7 +113,7 @@ contains
       type(prony_t), intent(out) :: prony
       type(error_t), allocatable, intent(out) :: error
 
-      ! moduli over the glassy modulus that are too small to matter
+      ! moduli divided by the glassy modulus that are too small to matter
       real(wp), parameter :: nothing = 1.0e-30_wp
       type(exponential_sum_t) :: both
       real(wp), allocatable :: pole(:), weight(:), offset(:), of_a(:), of_b(:), distance(:)

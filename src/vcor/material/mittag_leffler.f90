@@ -1,4 +1,4 @@
-!> Fractional Zener solid, a spring beside a spring and a fractional dashpot in series:
+!> Fractional Zener solid, a spring parallel to a spring and a fractional dashpot in series:
 !> E(t) = E_0 + E_1 E_a(-(t/tau)^a). For a = 1/2 it is `cerf`, for a = 1 the standard linear solid
 module vcor_material_mittag_leffler
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value

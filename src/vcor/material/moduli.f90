@@ -1,4 +1,4 @@
-!> Moduli of materials over time and frequency, the data of Figs. 1 and 5
+!> Moduli of materials against time and frequency, the data of Figs. 1 and 5
 module vcor_material_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
       ieee_quiet_nan, ieee_value

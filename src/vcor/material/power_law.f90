@@ -1,4 +1,4 @@
-!> Fractional Kelvin-Voigt solid, a spring beside a fractional dashpot, which Bagley and Torvik
+!> Fractional Kelvin-Voigt solid, a spring parallel to a fractional dashpot, which Bagley and Torvik
 !> fitted to BUTYL B252: E(t) = E_0 + C t^-a/Gamma(1 - a)
 module vcor_material_power_law
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value

@@ -410,7 +410,7 @@ contains
       real(wp), intent(in) :: modulus(:)
       !> Logarithms of rates; on return those with positive weight, increasing
       real(wp), allocatable, intent(inout) :: rate(:)
-      !> Weights over the first modulus, that of the equilibrium modulus first, shape (0:n)
+      !> Weights divided by the first modulus, that of the equilibrium modulus first, shape (0:n)
       real(wp), allocatable, intent(out) :: weight(:)
       !> Square root of the sum of squares of the relative misfits
       real(wp), intent(out) :: residual

@@ -129,7 +129,7 @@ contains
    pure subroutine jacobi(landen, part, sn, cn, dn)
       !> The transformation of the modulus
       type(landen_t), intent(in) :: landen
-      !> Argument u over the quarter period K, between 0 and 1
+      !> Argument u divided by the quarter period K, between 0 and 1
       real(wp), intent(in) :: part
       !> sn(u)
       real(wp), intent(out) :: sn

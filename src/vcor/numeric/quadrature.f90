@@ -199,7 +199,7 @@ contains
    pure subroutine substitution(y, m, phi, slope, excess)
       !> Argument
       real(wp), intent(in) :: y
-      !> Scale of the rule, pi over its step
+      !> Scale of the rule, pi divided by its step
       real(wp), intent(in) :: m
       real(wp), intent(out) :: phi
       !> Derivative

@@ -412,7 +412,7 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      ! window over the time of the largest force
+      ! window divided by the time of the largest force
       real(wp), parameter :: longer = 3.0_wp
       type(peak_t) :: top(2)
       type(course_t) :: course

@@ -144,7 +144,7 @@ contains
       call list%add('max_force', 'F_max', 'N', 'largest contact force', outcome%max_force)
       call list%add('residual_indentation', 's(t0)', 'm', 'indentation left at separation', &
          outcome%residual_indentation)
-      call list%add('residual_ratio', 's0/smax', '1', 'residual over largest indentation', &
+      call list%add('residual_ratio', 's0/smax', '1', 'ratio of residual to largest indentation', &
          outcome%residual_ratio)
       call list%add('hysteresis_energy', 'W_h', 'J', 'energy lost in the contact', &
          outcome%hysteresis_energy)
@@ -154,7 +154,7 @@ contains
          outcome%energy_loss)
       call list%add('initial_energy', 'KE_0', 'J', 'kinetic energy before the impact', &
          outcome%initial_energy)
-      call list%add('energy_imbalance', 'dW', 'J', 'what the energy budget misses', &
+      call list%add('energy_imbalance', 'dW', 'J', 'energy imbalance: lost, but not accounted for', &
          outcome%energy_imbalance)
       call list%add('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0', &
          outcome%min_frequency)
@@ -175,22 +175,22 @@ contains
          outcome%rebound_height)
       call list%add('contact_radius', 'a', 'm', 'largest radius of the contact', &
          outcome%contact_radius)
-      call list%add('contact_ratio', 'a/R', '1', 'contact_radius over the radius', &
+      call list%add('contact_ratio', 'a/R', '1', 'ratio of contact_radius to the radius', &
          outcome%contact_ratio)
       call list%add('thickness_ratio', 'a/2h', '1', &
-         "contact_radius over thickness, plate's share", &
+         "contact_radius / thickness, times the plate's share", &
          outcome%thickness_ratio)
-      call list%add('layer_ratio', 'a/H', '1', 'contact_radius over thickness on a base', &
+      call list%add('layer_ratio', 'a/H', '1', 'ratio of contact_radius to thickness, on a base', &
          outcome%layer_ratio)
       call list%add('layer_stiffening', 'F/F_H', '1', &
-         'force over that on a half space, on a base', outcome%layer_stiffening)
+         'ratio of the force to that on a half space, on a base', outcome%layer_stiffening)
       call list%add('plate_wave_number', 'kH', '1', 'thickness times wave number at pi/t0', &
          outcome%plate_wave_number)
       call list%add('needed_extent', 'pi/k', 'm', 'nearest edge that does not send waves back', &
          outcome%needed_extent)
-      call list%add('deflection_ratio', 'U/2h', '1', 'largest plate displacement over thickness', &
+      call list%add('deflection_ratio', 'U/2h', '1', 'ratio of largest plate displacement to thickness', &
          outcome%deflection_ratio)
-      call list%add('weight_ratio', 'mg/F', '1', 'weight of the sphere over max_force', &
+      call list%add('weight_ratio', 'mg/F', '1', 'ratio of the weight of the sphere to max_force', &
          outcome%weight_ratio)
       call list%add('mean_pressure', 'p_m', 'Pa', 'mean pressure at the largest force', &
          outcome%mean_pressure)

@@ -28,10 +28,10 @@ module vcor_verify_methods
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: judge_ends, judge_numbers, is_honest, error_of_best
 
-   !> Largest true error over the stated one: over the cases of tests/reference with these steps the
+   !> Largest true error divided by the stated one: over the cases of tests/reference with these steps the
    !> ratio is below 3 wherever the error is above `rounding`
    real(wp), parameter :: honest_factor = 3.0_wp
-   !> Accuracy of the energy budget and of quantities other than cor over that of cor: the steps are
+   !> Accuracy of the energy budget and of quantities other than cor divided by that of cor: the steps are
    !> chosen for cor, and the errors of the others are of the same order
    real(wp), parameter :: other_quantities = 10.0_wp
    !> Relative error of any number by rounding and by the error of the reference itself
@@ -311,7 +311,7 @@ contains
       if (separated) separated = self%outcome%status == contact_separated
    end function separated
 
-   !> Imbalance of the energy budget over the initial energy [-]
+   !> Imbalance of the energy budget divided by the initial energy [-]
    elemental function imbalance(self)
       class(attempt_t), intent(in) :: self
       real(wp) :: imbalance

@@ -277,7 +277,7 @@ class Source:
         if not self.scale and reference < _COLDEST:
             self.remarks = [
                 f"the card is read in units {self.units}",
-                f"its reference temperature, {reference:g}, is no kelvin: taken as degrees Celsius,"
+                f"its reference temperature, {reference:g}, is not in K: taken as degrees Celsius,"
                 f" {reference + ZERO_C:g} K; --celsius states that, --no-shift leaves it out",
             ]
             return reference + ZERO_C

@@ -278,7 +278,7 @@ def _parser() -> _command.Parser:
     parser = _command.Parser(
         "card",
         description="Write a material of a case as a card of a finite element program, or read "
-        "such a card and write a &material group. Models that are no sums of exponentials become "
+        "such a card and write a &material group. Models that are not sums of exponentials become "
         "one, with its error.",
     )
     add = parser.add_argument

@@ -46,7 +46,7 @@ COLUMNS = ("cor", "cor_sphere", "cor_error", "cor_sphere_error", "contact_time",
            "initial_energy", "validity", "validity_cause")  # fmt: skip
 #: What e is, and where its end of contact is
 MEANING = {
-    "cor_sphere": "speed of the sphere away from the plate at rest over that towards it",
+    "cor_sphere": "speed of the sphere away from the plate at rest, divided by that towards it",
     "cor": "relative speed of the bodies after over before",
 }
 #: Steps of a contact that are advised, and contacts that an input runs
@@ -493,8 +493,8 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
         "waves in the plate": case["plate.waves"] not in (None, "none"),
         "gravity": bool(case["impact.gravity"]),
         "a layer on a base": bool(_base(case)),
-        "a body that is no sphere": case["sphere.shape"] not in SPHERES,
-        "a sphere that is no paraboloid": case["sphere.shape"] == "true_sphere",
+        "a body that is not a sphere": case["sphere.shape"] not in SPHERES,
+        "a sphere that is not a paraboloid": case["sphere.shape"] == "true_sphere",
         "the second Volterra term": case["solver.volterra_order"] == 2,
     }
     for reason, holds in reasons.items():

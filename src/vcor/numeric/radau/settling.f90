@@ -13,7 +13,7 @@
 !>
 !> As dt/dy = 0 at the end, dx/dy = 0 at y = 0, in collocation too. What the values give for this
 !> slope is rounding. It is left out, because fast exponentials, whose m_0 falls only as a^(-1/2),
-!> would feel it most.
+!> would be affected most.
 !>
 !> The powers of y come from an expansion in Legendre polynomials. Computed from the values in one
 !> step, their coefficients would have independent errors, five digits of 16; this way they belong

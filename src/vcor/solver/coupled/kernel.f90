@@ -248,7 +248,7 @@ contains
    !> any frequency has a pole nearby, where a layer resonates, and against the waves cos(ka)
    pure subroutine wavenumbers(face, p, radius, finest, k, weight)
       type(face_t), intent(in) :: face
-      !> Laplace variables over the speed of shear waves [1/m]
+      !> Laplace variables divided by the speed of shear waves [1/m]
       complex(wp), intent(in) :: p(:)
       !> Radius of the row a [m]
       real(wp), intent(in) :: radius
