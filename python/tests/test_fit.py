@@ -8,7 +8,7 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor import uncertainty
+from vcor import uncertainty_command
 
 DATA = ROOT / "examples" / "soft_rubber_data.csv"
 
@@ -104,7 +104,7 @@ def test_json_of_the_program(program, tmp_path, model):
     case = vcor.Case(text.replace("'rubber'", "'soft rubber'"))
     (tmp_path / "case.nml").write_text(case.text())
     pytest.importorskip("SALib", reason="vcor uncertainty needs it, vcor.fit does not")
-    uncertainty.main(
+    uncertainty_command.main(
         [str(tmp_path / "case.nml"), "--covariance", str(tmp_path / "a" / "fit.json")]
         + ["--samples", "64", "--quantity", "cor", "--output", str(tmp_path), "--quiet"]
     )

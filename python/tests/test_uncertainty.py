@@ -4,16 +4,18 @@ import contextlib
 import json
 import re
 import warnings
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
-from conftest import PAPER, ROOT
+from conftest import PAPER, ROOT, SWEEPS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import vcor
-from vcor import uncertainty
+from vcor import plot, uncertainty_command
 from vcor.uncertainty import Spread
 
 EXAMPLES = ROOT / "examples"
@@ -301,7 +303,7 @@ def test_the_same_seed_gives_the_same_numbers(sls):
 def test_command(tmp_path, capsys):
     words = [PAPER / "sls.nml", "--vary", "rubber.beta=5%", "--vary", "impact.velocity=9:11"]
     words += ["--samples", "64", "--output", tmp_path]
-    uncertainty.main([str(word) for word in words])
+    uncertainty_command.main([str(word) for word in words])
     said = capsys.readouterr().out
     assert "numerical   material      model" in said
     written = json.loads((tmp_path / "sls_uncertainty.json").read_text())
@@ -322,7 +324,9 @@ def test_command(tmp_path, capsys):
 )
 def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
     with pytest.raises(SystemExit) as caught:
-        uncertainty.main([str(PAPER / "sls.nml"), "--vary", word, "--output", str(tmp_path)])
+        uncertainty_command.main(
+            [str(PAPER / "sls.nml"), "--vary", word, "--output", str(tmp_path)]
+        )
     assert caught.value.code in (2, 3)
     error = capsys.readouterr().err
     assert error.startswith("vcor: error: ")
@@ -342,7 +346,7 @@ def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
 def test_bad_options_are_refused_in_one_line(words, said, capsys, tmp_path):
     words = [str(PAPER / "sls.nml"), "--vary", "rubber.beta=5%", *words, "--output", str(tmp_path)]
     with pytest.raises(SystemExit) as caught:
-        uncertainty.main(words)
+        uncertainty_command.main(words)
     assert caught.value.code == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1
@@ -351,7 +355,7 @@ def test_bad_options_are_refused_in_one_line(words, said, capsys, tmp_path):
 def test_impacts_without_a_result_are_a_line(capsys, tmp_path):
     words = [PAPER / "sls.nml", "--vary", "sphere.radius=0.5", "--samples", "32", "--output"]
     with pytest.raises(SystemExit):
-        uncertainty.main([str(word) for word in [*words, tmp_path]])
+        uncertainty_command.main([str(word) for word in [*words, tmp_path]])
     lines = capsys.readouterr().err.splitlines()
     assert [line.split()[1] for line in lines] == ["note:", "error:"]
 
@@ -401,3 +405,101 @@ def test_a_name_in_the_figure_is_no_formula(half_space):
     figure.draw_without_rendering()
     (label,) = figure.axes[0].get_yticklabels()
     assert label.get_text() == r"\$\frac\$ beta"
+
+
+@pytest.fixture
+def swept(half_space):
+    """The half space over three velocities."""
+    text = half_space.text() + "&sweep parameter = 'impact.velocity', values = 1.0, 5.0, 20.0 /\n"
+    return vcor.Case(text)
+
+
+def test_bands_are_those_of_each_impact(swept):
+    """Along a sweep, what each of its impacts has, with the same samples."""
+    vary = {"rubber.beta": "5%", "impact.velocity": "2%"}
+    found = vcor.bands(swept, vary, samples=64, quantities=["cor", "max_force"])
+    table = found.table.sel({"impact.velocity": 5.0})
+    single = vcor.Case(swept.text().partition("&sweep")[0])
+    single["impact.velocity"] = 5.0
+    wanted = vcor.propagate(single, vary, samples=64, quantities=["cor", "max_force"])
+    assert found.points[1].as_dict() == wanted.as_dict()
+    for name in found.quantities:
+        row = wanted.table.sel(quantity=name)
+        for percent in row.percent.values:
+            assert table[f"{name}_p{percent:g}"] == row.percentiles.sel(percent=percent)
+        assert table[name] == row["value"]
+        assert abs(table[f"{name}_exact"] - table[name]) == row.model
+        assert table[f"{name}_material"] == row.material > 0
+        assert table[f"{name}_numerical"] == row.numerical
+    assert table.max_force_exact.attrs["units"] == "N"
+    assert table.validity.item() == wanted.validity == swept.run().validity.values[1]
+
+
+def test_small_bands_follow_the_scaling_of_a_half_space(swept):
+    """cor depends on velocity and modulus by E^2 v alone: bands of one are those of the other."""
+    some = [
+        vcor.bands(swept, {address: spread}, samples=256, quantities=["cor"]).table
+        for address, spread in (("impact.velocity", "2%"), ("rubber.glassy_modulus", "1%"))
+    ]
+    for end in ("2.5", "97.5"):
+        first, second = (table[f"cor_p{end}"] / table.cor - 1 for table in some)
+        assert (abs(first) > 1e-5).all()
+        assert np.allclose(first, second, rtol=0.02)
+
+
+def test_command_over_a_sweep(swept, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    swept.save("rubber.nml")
+    words = ["rubber.nml", "--vary", "rubber.beta=5%", "--samples", "64", "--quantity",
+             "contact_time,cor", "--output", "found"]  # fmt: skip
+    uncertainty_command.main(words)
+    said = capsys.readouterr().out
+    assert "contact_time: the largest error is that of the model at 3 of 3 values" in said
+    written = vcor.open("found/rubber_uncertainty.h5")
+    rows = pd.read_csv("found/rubber_uncertainty.csv", comment="#")
+    document = json.loads(Path("found/rubber_uncertainty.json").read_text())
+    assert document["parameter"] == "impact.velocity" and document["unit"] == "m/s"
+    ends = [f"contact_time_p{end}" for end in ("2.5", "16", "50", "84", "97.5")]
+    assert (np.diff([written[name] for name in ends], axis=0) > 0).all()
+    for name in ("impact.velocity", *ends, "cor", "validity", "validity_cause"):
+        assert (rows[name].to_numpy() == written[name].values).all()
+    for i, point in enumerate(document["points"]):
+        known = point["quantities"]["contact_time"]["percentiles"]
+        assert list(known.values()) == [float(written[name][i]) for name in ends]
+    assert vcor.Case(written.attrs["case"]).run().cor.equals(swept.run().cor)
+    # what vcor plot draws of it: two shares, and the exact mechanics
+    plot.main(["found/rubber_uncertainty.h5", "--quantity", "contact_time", "--output", "b.svg"])
+    figure = plot.figure("found/rubber_uncertainty.h5", quantities=["contact_time"])
+    outer, inner = (one.get_paths()[0].vertices[:, 1] for one in figure.axes[0].collections)
+    assert outer.max() == pytest.approx(1e3 * written["contact_time_p97.5"].values.max())
+    assert inner.min() == pytest.approx(1e3 * written["contact_time_p16"].values.min())
+    exact = next(line for line in figure.axes[0].lines if line.get_label() == "exact mechanics")
+    assert np.allclose(exact.get_ydata(), 1e3 * written.contact_time_exact)
+
+
+def test_values_of_a_sweep_without_a_result(swept):
+    """They are nan, and said; the others have their bands."""
+    swept["solver.end_time"] = 1.8e-3
+    with pytest.warns(vcor.NoResultWarning, match="1 of 3 values of impact.velocity, and"):
+        found = vcor.bands(swept, {"rubber.beta": "1%"}, samples=64, quantities=["cor"])
+    assert np.isfinite(found.table.cor).values.tolist() == [False, True, True]
+    assert found.table.validity.values[0] == "none"
+    assert [one is None for one in found.points] == [True, False, False]
+    assert "nan" in str(found) and found.as_dict()["points"][0] == {"value": 1.0}
+    swept["solver.end_time"] = 1e-5
+    with pytest.raises(vcor.NumericalError, match="samples have no result"):
+        vcor.bands(swept, {"rubber.beta": "1%"}, samples=64)
+
+
+def test_sweeps_that_have_no_bands(swept, half_space):
+    with pytest.raises(vcor.UsageError, match="found 0 swept parameters, expected one"):
+        vcor.bands(half_space, {"rubber.beta": "1%"})
+    with pytest.raises(vcor.UsageError, match="found 2 swept parameters, expected one"):
+        vcor.bands(SWEEPS / "velocity_and_radius.nml", {"rubber.beta": "1%"})
+    with pytest.raises(vcor.UsageError, match="this parameter is swept, expected a spread about"):
+        vcor.bands(swept, {"impact.velocity": "1:2"})
+    with pytest.raises(vcor.UsageError, match=r"a sweep over impact.velocity.*vcor.bands"):
+        vcor.propagate(swept, {"rubber.beta": "1%"})
+    source = {"parameters": [{"name": "impact.velocity", "value": 2.0}], "covariance": [[0.01]]}
+    with pytest.raises(vcor.UsageError, match="is swept, and the covariance has it"):
+        vcor.bands(swept, covariance=source)

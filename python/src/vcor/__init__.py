@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .materials.master import master
     from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
     from .uncertainty import propagate, sensitivities
+    from .uncertainty_sweep import bands
 
 __all__ = [
     "Case",
@@ -38,6 +39,7 @@ __all__ = [
     "NumericalError",
     "UsageError",
     "__version__",
+    "bands",
     "card",
     "export",
     "fit",
@@ -59,6 +61,7 @@ for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, Usa
 #: What needs scipy or reads files, by its module; imported when it is used
 _LATER = {
     "Fit": "materials.fit",
+    "bands": "uncertainty_sweep",
     "card": "exchange.cards",
     "export": "exchange.codes",
     "fit": "materials.fit",

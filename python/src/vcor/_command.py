@@ -133,7 +133,7 @@ MODULES = {
     "master": "materials.master",
     "plot": "plot",
     "table": "materials.table",
-    "uncertainty": "uncertainty",
+    "uncertainty": "uncertainty_command",
 }
 
 

@@ -15,13 +15,14 @@ from .plot import save
 def finish(
     options: argparse.Namespace, report: str, stem: str, contents: Mapping[str, Any], figure: Any
 ) -> None:
-    """Write texts, or what goes into JSON, by the ends of their names and a figure, and report."""
+    """Write texts, bytes or what goes into JSON, by the ends of names, and a figure, and report."""
     folder = options.output if options.output.endswith("/") else f"{options.output}/"
     paths = [place(folder, stem + end.rpartition(".")[0], [end.rpartition(".")[2]], None, [])
              for end in contents]  # fmt: skip
     for path, content in zip(paths, contents.values(), strict=True):
-        text = content if isinstance(content, str) else json.dumps(content, indent=1) + "\n"
-        write(path, text.encode())
+        if not isinstance(content, (str, bytes)):
+            content = json.dumps(content, indent=1) + "\n"
+        write(path, content if isinstance(content, bytes) else content.encode())
     paths.append(place(folder, stem, [options.format], None, []))
     save(figure, paths[-1])
     if not options.quiet:

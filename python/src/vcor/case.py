@@ -612,6 +612,15 @@ def with_material(case: Case, name: str, change: Callable[[re.Match[str]], str])
     return _restored(text, case._path, case.name, {})
 
 
+def with_values(case: Case, values: Mapping[str, float]) -> Case:
+    """A copy of a case without its &sweep groups, with values in their place."""
+    text = re.sub(r"(?ms)^&sweep\n.*?^/$", "", case.text())
+    made = _restored(text, case._path, case.name, {})
+    for address, value in values.items():
+        made[address] = value
+    return made
+
+
 def _namelists(groups: Groups) -> str:
     """Text of a case from its groups."""
     lines: list[str] = []

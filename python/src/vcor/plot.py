@@ -449,6 +449,7 @@ def _sweep(wishes: _Wishes) -> Figure:
         fy, y_label = _labelled(name, column.attrs, *[line[name].values for _, line in lines])
         for i, (words, line) in enumerate(lines):
             _curve(axis, i, fx * line[across], fy * line[name], words)
+            _bands(axis, i, fx * line[across], line, name, fy)
         if wishes.hatch:
             _hatch_span(axis, [line for _, line in lines], across, fx)
         _points(axis, wishes.data, across, name, fx, fy)
@@ -456,6 +457,18 @@ def _sweep(wishes: _Wishes) -> Figure:
             axis.set_xscale("log")
         axis.set(xlabel=x_label, ylabel=y_label)
     return made
+
+
+def _bands(axis: Axes, number: int, x: Any, line: xr.Dataset, name: str, factor: float) -> None:
+    """What vcor uncertainty knows beside a curve: shares of the samples, and exact mechanics."""
+    color = list(mpl.rcParams["axes.prop_cycle"])[number % MOST]["color"]
+    for low, high, text, alpha in (("2.5", "97.5", "95 %", 0.2), ("16", "84", "68 %", 0.3)):
+        if (bottom := f"{name}_p{low}") in line and (top := f"{name}_p{high}") in line:
+            axis.fill_between(x, factor * line[bottom], factor * line[top], color=color, lw=0,
+                              alpha=alpha, label=f"{text} of the samples")  # fmt: skip
+    if f"{name}_exact" in line and np.isfinite(line[f"{name}_exact"]).any():
+        axis.plot(x, factor * line[f"{name}_exact"], color=color, ls="--", marker="",
+                  label="exact mechanics")  # fmt: skip
 
 
 def _across(result: Result) -> str:

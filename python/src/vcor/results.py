@@ -6,6 +6,7 @@ import faulthandler
 import os
 import resource
 import signal
+import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -70,6 +71,32 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)
     return result.assign_attrs(attrs | dict(result.attrs))
+
+
+def as_csv(data: xr.Dataset) -> str:
+    """Results over one address as the program writes them to CSV."""
+    columns = [*data.coords.values(), *data.data_vars.values()]
+    units = [f" [{one.attrs['units']}]" if "units" in one.attrs else "" for one in columns]
+    head = [
+        f"vcor {data.attrs['version']}", f"title: {data.attrs['title']}", "columns:",
+        *(f"  {one.name}{unit} {one.attrs['long_name']}"
+          for one, unit in zip(columns, units, strict=True)),
+        "case:", *data.attrs["case"].splitlines(),
+    ]  # fmt: skip
+    cells = [[f"{one:.17g}" if one.dtype.kind == "f" else str(one) for one in column.values]
+             for column in columns]  # fmt: skip
+    rows = [[str(one.name) for one in columns], *zip(*cells, strict=True)]
+    return "".join(f"# {line}\n" for line in head) + "".join(f"{','.join(row)}\n" for row in rows)
+
+
+def as_hdf5(data: xr.Dataset) -> bytes:
+    """Results as `open` reads them."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "results.h5"
+        data.drop_attrs(deep=False).to_netcdf(path, group="summary", engine="h5netcdf")
+        with h5py.File(path, "r+") as file:
+            file.attrs.update(data.attrs)
+        return path.read_bytes()
 
 
 def _check(path: str) -> None:

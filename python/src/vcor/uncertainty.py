@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import json
 import math
@@ -10,14 +9,13 @@ import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy.special import ndtri
 
-from . import _command, _library, _text
+from . import _library, _text
 from ._differences import slopes
 from ._library import (
     MOST_SEED,
@@ -29,7 +27,7 @@ from ._library import (
     whole,
     within,
 )
-from .case import MOST_POINTS, Case, as_case, listed, read, with_material
+from .case import MOST_POINTS, Case, as_case, listed, with_material
 from .materials.advice import percent, product
 from .materials.limits import UNDETERMINED
 from .materials.observations import sharpen
@@ -208,8 +206,8 @@ class _Fit:
 class Uncertainty:
     """What is known of the results of an impact; `str` is the report of the command."""
 
-    #: Over `quantity`: value, numerical, material and model error, nan if not known, standard
-    #: deviation, percentiles;
+    #: Over `quantity`: value, that of the exact mechanics, numerical, material and model error, nan
+    #: if not known, percentiles;
     #: over `parameter` too: elasticity; over `source`, a parameter or the covariance as one: first
     #: and total Sobol' index, their 95 % half widths, and swing, the ends of one deviation
     table: xr.Dataset
@@ -224,6 +222,11 @@ class Uncertainty:
     def __str__(self) -> str:
         return _report(self)
 
+    @property
+    def quantities(self) -> list[str]:
+        """Names of the quantities."""
+        return [str(name) for name in self.table.quantity.values]
+
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
         table = self.table
@@ -233,11 +236,11 @@ class Uncertainty:
             validity=self.validity,
             validity_cause=self.validity_cause,
             quantities={
-                str(name): {
+                name: {
                     "unit": row.units.item(),
                     **{key: _by_name(row[key]) for key in table.data_vars},
                 }
-                for name, row in ((one, table.sel(quantity=one)) for one in table.quantity.values)
+                for name, row in ((one, table.sel(quantity=one)) for one in self.quantities)
             },
         )
 
@@ -245,9 +248,9 @@ class Uncertainty:
         """Tornado figure (matplotlib) of a quantity: its change by one standard deviation."""
         from .plot import COLUMN, _labelled, _name_of, drawn
 
-        if quantity not in self.table.quantity.values:
+        if quantity not in self.quantities:
             raise UsageError(f"found no quantity '{quantity}', expected one of "
-                             f"{', '.join(self.table.quantity.values)}")  # fmt: skip
+                             f"{', '.join(self.quantities)}")  # fmt: skip
         row = self.table.sel(quantity=quantity)
         below, above = (row["swing"].sel(side=side).values for side in ("below", "above"))
         order = np.argsort(np.abs(above - below))
@@ -359,6 +362,9 @@ def propagate(
     from SALib.sample import sobol as sampling
 
     case = as_case(case).copy()
+    if axes := list(case._axes()):
+        raise UsageError(f"{case.name}: found a sweep over {', '.join(axes)}, expected one impact; "
+                         "vcor.bands takes a sweep")  # fmt: skip
     quantities = _checked(case, quantities)
     whole(samples, "samples", 1, MOST_POINTS)
     whole(seed, "seed", 0, MOST_SEED)
@@ -409,13 +415,15 @@ def propagate(
         elastic[:, apart] = sensitivities(case, [addresses[i] for i in apart], quantities)
     pull = np.nan_to_num(elastic) * np.sign(value)[:, None]
     swing = _swing(case, spreads, addresses, pull, quantities)
+    exact = _exact(case, quantities)
     over, both = ("quantity",), ("quantity", "parameter")
     table = xr.Dataset(
         {
             "value": (over, value),
             "numerical": (over, numerical),
             "material": (over, shown.std(axis=0, ddof=1)),
-            "model": (over, np.abs(_exact(case, quantities) - value)),
+            "exact": (over, exact),
+            "model": (over, np.abs(exact - value)),
             "mean": (over, shown.mean(axis=0)),
             "percentiles": (("quantity", "percent"), np.percentile(shown, PERCENTILES, axis=0).T),
             "elasticity": (both, elastic),
@@ -586,56 +594,3 @@ def _report(found: Uncertainty) -> str:
                      f"{float(row.total):8.3f}{float(row.total_error):7.3f}")  # fmt: skip
     lines += ["", f"{found.samples} samples, {found.lost} of them without a result"]
     return "\n".join(lines) + "\n"
-
-
-def _parser() -> _command.Parser:
-    """Options of `vcor uncertainty`."""
-    parser = _command.Parser(
-        "uncertainty",
-        description="How uncertain the results of an impact are, and by what: errors of the "
-        "numbers, of the material and of the model, elasticities and Sobol' indices. Writes JSON "
-        "and a figure.",
-    )
-    parser.add_outputs()
-    add = parser.add_argument
-    add("case", metavar="CASE.nml", nargs="+", help="case, and files of materials that it needs")
-    setting = "replace a value of the case, as vcor run does"
-    add("--set", metavar="ADDRESS=VALUE", action="append", default=[], help=setting)
-    spreads = "5%% (of its value), 0.1 (in its unit) or 1:2 (uniform)"
-    add("--vary", metavar="ADDRESS=SPREAD", action="append", default=[], help=spreads)
-    add("--covariance", metavar="FIT.json", help="JSON of vcor fit or vcor identify")
-    add("--samples", metavar="N", type=int, default=4096, help="impacts that are solved, about")
-    add("--quantity", metavar="NAME,NAME", help="columns of the summary, the first is drawn")
-    add("--seed", metavar="N", type=int, default=1, help="seed of the samples; default: 1")
-    add("--threads", metavar="N", type=int, help="threads; default: one per core")
-    return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor uncertainty`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
-
-
-def _work(options: argparse.Namespace) -> None:
-    vary: dict[str, str | float] = {}
-    for word in options.vary:
-        address, _, vary[address] = word.partition("=")
-    case = read(*options.case)
-    for word in options.set:
-        address, _, case[address] = word.partition("=")
-    found = propagate(
-        case,
-        vary,
-        covariance=options.covariance,
-        samples=options.samples,
-        quantities=options.quantity.split(",") if options.quantity else USUAL,
-        seed=options.seed,
-        threads=options.threads,
-    )
-    texts = {".json": found.as_dict()}
-    figure = found.figure(str(found.table.quantity.values[0]))
-    stem = f"{Path(options.case[0]).stem}_uncertainty"
-    from ._outputs import finish
-
-    finish(options, str(found), stem, texts, figure)

@@ -1,0 +1,195 @@
+"""Uncertainty along a sweep: bands of results over the parameter that a case varies."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from . import _library, _text
+from ._library import NoResultWarning, NumericalError, UsageError
+from .case import Case, as_case, with_values
+from .uncertainty import PERCENTILES, USUAL, Spread, Uncertainty, propagate
+
+#: Most points of the sweep that a report shows
+ROWS = 12
+#: What follows the name of a quantity in the columns, and its meaning
+COLUMNS = {
+    "numerical": "error of the numbers",
+    "material": "standard deviation by the parameters",
+    "exact": "with exact mechanics",
+}
+
+
+@dataclass(frozen=True)
+class Bands:
+    """Uncertainty of the results along a sweep; `str` is the report of the command."""
+
+    #: Over the swept address: each quantity, NAME_numerical, NAME_material, NAME_exact, its
+    #: percentiles NAME_p2.5 to NAME_p97.5, validity and validity_cause; nan without a result
+    table: xr.Dataset
+    quantities: list[str]
+    #: All that is known of each point of the sweep, None where there is no result
+    points: list[Uncertainty | None]
+
+    def __str__(self) -> str:
+        return _report(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """All results as they are written to JSON."""
+        (axis,) = self.table.coords
+        return _text.document(
+            parameter=str(axis),
+            unit=self.table[axis].attrs.get("units", "1"),
+            points=[
+                {"value": float(value), **(found.as_dict() if found else {})}
+                for value, found in zip(self.table[axis].values, self.points, strict=True)
+            ],
+        )
+
+    def figure(self, quantity: str = "cor") -> Any:
+        """Figure (matplotlib) of a quantity with its bands, as `vcor plot` makes it."""
+        from .plot import figure
+
+        return figure(self.table, quantities=[quantity])
+
+
+def bands(
+    case: Case | str | os.PathLike[str],
+    vary: Mapping[str, str | float] | None = None,
+    *,
+    covariance: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    samples: int = 4096,
+    quantities: Sequence[str] = USUAL,
+    seed: int = 1,
+    threads: int | None = None,
+) -> Bands:
+    """Uncertainty of results along a sweep: at each of its values what `propagate` gives.
+
+    The samples are the same at all values, so that the bands are as smooth as the results.
+
+    Parameters
+    ----------
+    case
+        A case with one &sweep group.
+    vary, covariance
+        As for `propagate`. The swept parameter may vary about its values: "5%" or "0.1".
+    samples
+        Impacts that are solved at each value, about.
+    quantities, seed, threads
+        As for `propagate`.
+
+    Returns
+    -------
+    Bands
+        Quantities and their percentiles over the swept parameter.
+    """
+    case, axes = as_case(case), as_case(case)._axes()
+    if len(axes) != 1:
+        raise UsageError(f"{case.name}: found {len(axes)} swept parameters, expected one")
+    ((address, values),) = axes.items()
+    wanted = {} if vary is None else dict(vary.items())
+    if ":" in str(wanted.get(address, "")):
+        raise UsageError(f"{address}={wanted[address]}: this parameter is swept, expected a spread "
+                         "about its values, such as 5% or 0.1 (in its unit)")  # fmt: skip
+    if covariance is not None:
+        case, joint = Spread.joint(case, covariance)
+        if address in joint.addresses:
+            raise UsageError(f"{address}: this parameter is swept, and the covariance has it; "
+                             "expected one of the two")  # fmt: skip
+    points: list[Uncertainty | None] = []
+    failures = []
+    for value in values:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            try:
+                points.append(propagate(
+                    with_values(case, {address: float(value)}), wanted, covariance=covariance,
+                    samples=samples, quantities=quantities, seed=seed, threads=threads,
+                ))  # fmt: skip
+            except NumericalError as error:
+                points.append(None)
+                failures.append(error)
+    good = next((one for one in points if one), None)
+    if not good:
+        raise failures[0]
+    lost = sum(one.lost for one in points if one)
+    if failures or lost:
+        first = f", the first one: {failures[0]}" if failures else ""
+        warnings.warn(
+            f"{case.name}: {len(failures)} of {len(points)} values of {address}, and {lost} "
+            f"samples of the others, have no result{first}",
+            NoResultWarning,
+            stacklevel=2,
+        )
+    nothing = xr.full_like(good.table, np.nan)
+    along = xr.concat([one.table if one else nothing for one in points], address)
+    columns = {}
+    for name in good.quantities:
+        columns |= _columns(name, along.sel(quantity=name))
+    for name in ("validity", "validity_cause"):
+        words = [getattr(one, name) if one else "none" for one in points]
+        columns[name] = np.array(words), _library.columns(0)[name].attrs
+    table = xr.Dataset(
+        {name: (address, column, attrs) for name, (column, attrs) in columns.items()},
+        coords={address: (address, values, case._describe(address).attrs)},
+        attrs=case._attrs({}),
+    )
+    return Bands(table, good.quantities, points)
+
+
+def _columns(name: str, along: xr.Dataset) -> dict[str, tuple[NDArray[Any], dict[str, str]]]:
+    """Columns of a quantity with their attributes, from what is known of it along the sweep."""
+    attrs = _library.columns(0)[name].attrs
+
+    def named(meaning: str) -> dict[str, str]:
+        return attrs | {"long_name": f"{attrs['long_name']}: {meaning}"}
+
+    found = {name: (along["value"].values, attrs)}
+    for key, meaning in COLUMNS.items():
+        found[f"{name}_{key}"] = along[key].values, named(meaning)
+    for percent in PERCENTILES:
+        column = along.percentiles.sel(percent=percent).values
+        found[f"{name}_p{percent:g}"] = column, named(f"percentile {percent:g} of the samples")
+    return found
+
+
+def _report(found: Bands) -> str:
+    table, name = found.table, found.quantities[0]
+    (axis,) = table.coords
+    known = [(float(at), one) for at, one in zip(table[axis].values, found.points, strict=True)
+             if one]  # fmt: skip
+    units = [table[one].attrs.get("units", "1") for one in (axis, name)]
+    heads = [f"{one} [{unit}]" if unit != "1" else str(one)
+             for one, unit in zip((axis, name), units, strict=True)]  # fmt: skip
+    lines = [f"{heads[0]:>26s}{heads[1]:>16s}{'numerical':>11s}{'material':>11s}{'model':>11s}"
+             f"  {'95 % of the samples':26s}validity"]  # fmt: skip
+    chosen = np.unique(np.linspace(0, len(found.points) - 1, ROWS).round().astype(int))
+    for i in chosen:
+        row = table.isel({axis: i})
+        number, exact = float(row[name]), float(row[f"{name}_exact"])
+        errors = [float(row[f"{name}_numerical"]), float(row[f"{name}_material"]),
+                  abs(exact - number)]  # fmt: skip
+        texts = "".join(f"{'-':>11s}" if np.isnan(one) else f"{one:11.2g}" for one in errors)
+        low, high = (float(row[f"{name}_p{end:g}"]) for end in (PERCENTILES[0], PERCENTILES[-1]))
+        lines.append(f"{float(row[axis]):26.6g}{number:16.6g}{texts}  "
+                     f"{f'{low:.5g} to {high:.5g}':26s}{row.validity.item()}")  # fmt: skip
+    largest = {key: sum(one.dominant == key for _, one in known)
+               for key in ("numerical", "material", "model")}  # fmt: skip
+    lines += ["", f"{name}: the largest error is " + ", ".join(
+        f"that of the {'numbers' if key == 'numerical' else key} at {n}"
+        for key, n in largest.items() if n) + f" of {len(found.points)} values"]  # fmt: skip
+    where = [known[i][0] for i in (0, -1)]
+    ends = [known[i][1] for i in (0, -1)]
+    head = f"share of the variance of {name} (total)"
+    lines += ["", f"{head:44s}{f'at {where[0]:.4g}':>12s}{f'at {where[1]:.4g}':>12s}"]
+    for source in ends[0].table.source.values:
+        shares = [float(one.table.total.sel(quantity=name, source=source)) for one in ends]
+        lines.append(f"{str(source):44s}{shares[0]:12.3f}{shares[1]:12.3f}")
+    return "\n".join(lines) + "\n"
