@@ -5,13 +5,14 @@ program test_coupled
    use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, base_thin, &
       face_t, new_face
    use vcor_impact_history, only : history, history_columns
-   use vcor_impact_law, only : cone_factor, new_contact_law, punch_factor
+   use vcor_impact_law, only : cone_factor, new_contact_law, profile_factor, punch_factor
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : waves_none
    use vcor_impact_problem, only : impact_t
    use vcor_impact_response, only : static_response, wave_response
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_sphere, &
-      col_sphere_velocity, col_time, contact_lasting, contact_resting, contact_separated, trajectory_t
+      col_sphere_velocity, col_time, contact_lasting, contact_resting, contact_separated, &
+      trajectory_t
    use vcor_kinds, only : pi, wp
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, prony_t
@@ -713,6 +714,13 @@ contains
          trajectory%last), "the contact goes on for long")
       ! by 1280 steps in a fifth of the time
       call check_relative(trajectory%max_force, 620.65_wp, 1.0e-3_wp, "its largest force")
+      ! a blunt body on an incompressible layer begins with a force that no step resolves
+      call make_impact(impact, solid(2.0e6_wp, [1.0e6_wp, 1.0e6_wp, 3.0e6_wp], [100.0_wp, &
+         3.0e3_wp, 4.0e4_wp], 1100.0_wp, 0.5_wp), base_bonded, 0.01_wp, 2.0_wp, 0.01_wp, &
+         profile_factor(1.0e5_wp, 4.0_wp), exponent=1.25_wp)
+      call solve(impact, trajectory, asked=10.0_wp*accuracy)
+      call check(trajectory%max_force_error > 0.01_wp*trajectory%max_force, &
+         "a force without a largest value has a large error")
    end subroutine test_early_force
 
    !> Contacts that do not end: on a sheet too light for the sphere, or before the end time

@@ -150,7 +150,7 @@ contains
          if (status /= course_ended) then
             ! what the scout has seen is not so
             if (status == course_outlasts) call search%note(search%window, now%coarse%dt)
-            search%steps = 2*search%steps
+            search%steps = min(2*search%steps, most_steps)
             search%attempt = search%attempt + 1
             level = -1
             cycle
@@ -182,9 +182,11 @@ contains
       trajectory%cor_error = trajectory%cor_sphere_error
       trajectory%max_force_error = distance(before%coarse_force, before%fine_force, &
          now%coarse_force, now%fine_force)*careful + parabola*now%max_force
-      if (trajectory%max_force_error > sharp*now%max_force .and. now%time_of_max_force &
-          < early*now%contact_time) call resolve_peak(self, impact, search%radius, trajectory, &
-         error)
+      ! at first contact there is none that shorter steps would resolve
+      if (trajectory%max_force_error > sharp*now%max_force .and. &
+          now%time_of_max_force < early*now%contact_time .and. &
+          now%time_of_max_force > now%fine%dt) call resolve_peak(self, impact, search%radius, &
+         trajectory, error)
       if (allocated(error)) return
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
