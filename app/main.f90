@@ -12,7 +12,7 @@ program vcor_main
    use vcor_app_run, only : run_impact
    use vcor_app_screen, only : short
    use vcor_app_sweep, only : run_sweep
-   use vcor_app_validity, only : warn_of_implausible
+   use vcor_app_validity, only : warn_of_input
    use vcor_app_verify, only : verify_case, verify_program
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, error_usage, raise
@@ -115,7 +115,7 @@ contains
          case ('run')
             ! all ranks run a sweep, the first one a single impact
             if (this_rank() == 0 .and. .not. request%quiet) &
-               call warn_of_implausible(jobs(i)%case, jobs(i)%sweep%grid)
+               call warn_of_input(jobs(i)%case, jobs(i)%sweep)
             if (jobs(i)%sweep%is_grid()) then
                call run_sweep(request, jobs(i), trouble)
             else if (this_rank() == 0) then
@@ -123,7 +123,7 @@ contains
             end if
             call share_error(trouble)
          case ('check')
-            call warn_of_implausible(jobs(i)%case, jobs(i)%sweep%grid)
+            call warn_of_input(jobs(i)%case, jobs(i)%sweep)
             call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
                //chosen(jobs(i)), trouble)
          case ('material')

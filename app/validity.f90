@@ -5,6 +5,7 @@ module vcor_app_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_screen, only : coordinates, percent, short, significant
+   use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_grid, only : grid_t
    use vcor_case_identified, only : find_reliance, reliance_t
@@ -19,6 +20,7 @@ module vcor_app_validity
    use vcor_io_data_file, only : data_file
    use vcor_kinds, only : pi, wp
    use vcor_material_type, only : material_t
+   use vcor_sweep_points, only : sweep_t
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_number, only : real_text
    use vcor_text, only : integer_text, printable
@@ -27,31 +29,38 @@ module vcor_app_validity
    private
 
    public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
-      points_remark, about_numbers, joined, warn_of_implausible, warn_of_bands, beyond_data
+      points_remark, about_numbers, joined, warn_of_input, warn_of_bands, beyond_data
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
 
 contains
 
-   !> Warn on stderr of implausible numbers, and note which materials are at their reference
-   !> temperature because no other is given
-   subroutine warn_of_implausible(case, grid)
+   !> Warn on stderr of implausible numbers, and note which values are taken because none is given:
+   !> the mass of one of two spheres, the temperature of a material with a shift
+   subroutine warn_of_input(case, sweep)
       type(case_t), intent(in) :: case
-      type(grid_t), intent(in) :: grid
+      !> Its impacts
+      type(sweep_t), intent(in) :: sweep
 
       character(len=note_length), allocatable :: notes(:)
       character(len=:), allocatable :: name
       real(wp) :: temperature
       integer :: i
 
-      call implausible_numbers(case, grid, notes)
+      call implausible_numbers(case, sweep%grid, notes)
       do i = 1, size(notes)
          write (error_unit, '(a)') 'vcor: warning: '//trim(notes(i))
       end do
+      if (sweep%problem%surroundings%is_sphere .and. .not. any(swept_addresses(case) &
+         == case%address('sphere', 'mass')) .and. .not. case%given('sphere', 'mass')) &
+         write (error_unit, '(a)') 'vcor: note: '//case%location('plate', 'surface_radius') &
+         //': the second body is a sphere, and mass is not given: the mass is that of &sphere ' &
+         //'alone, '//short(sweep%problem%impact%mass)//' kg, as if the second one could not ' &
+         //'move; two free spheres need their reduced mass, m1 m2/(m1 + m2)'
       if (case%given('impact', 'temperature')) return
-      do i = 1, size(grid%axes)
-         if (grid%axes(i)%name == 'impact.temperature') return
+      do i = 1, size(sweep%grid%axes)
+         if (sweep%grid%axes(i)%name == 'impact.temperature') return
       end do
       do i = 1, case%count('material')
          if (.not. case%given('material', 'shift', i)) cycle
@@ -61,7 +70,7 @@ contains
             //": '"//printable(name)//"' is at its reference temperature, " &
             //real_text(temperature)//' K: there is no impact.temperature'
       end do
-   end subroutine warn_of_implausible
+   end subroutine warn_of_input
 
    !> Mechanics of a case, as far as the impact reads them
    function mechanics_of(case, reading, exact) result(text)

@@ -591,6 +591,11 @@ def number(case: Case, address: str, missing: float = math.nan) -> float:
     return float(value) if isinstance(value, (int, float)) else missing
 
 
+def radius_of(case: Case, missing: float = math.nan) -> float:
+    """Radius of the sphere [m], from its diameter where that is given."""
+    return number(case, "sphere.radius", 0.5 * number(case, "sphere.diameter", 2.0 * missing))
+
+
 def _dataset(
     variables: Mapping[str, Any], coords: Mapping[str, Any], attrs: Mapping[str, str]
 ) -> xr.Dataset:

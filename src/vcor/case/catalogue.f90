@@ -117,7 +117,9 @@ module vcor_case_catalogue
       key_t("sphere", "shape", text_key, "Shape of the body", &
          choices="sphere true_sphere cone punch power", default="sphere"), &
       key_t("sphere", "radius", real_key, "Radius", "m", positive, models="sphere true_sphere", &
-         required=.true.), &
+         required=.true., instead="diameter"), &
+      key_t("sphere", "diameter", real_key, "Diameter, instead of radius", "m", positive, &
+         models="sphere true_sphere"), &
       key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
       key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
          positive, models="sphere true_sphere"), &

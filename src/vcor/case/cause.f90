@@ -4,7 +4,8 @@
 !> `error%item`. The keys have the names of the arguments.
 module vcor_case_cause
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_case_catalogue, only : catalogue, find_group, groups, keys_of, list_key
+   use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, keys_of, last_row, &
+      list_key
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_t
    use vcor_text, only : integer_text, quoted, shortened
@@ -115,8 +116,31 @@ contains
       end if
    end function names_about
 
-   !> Address of the key with the name of an argument
+   !> Address of the key with the name of an argument, or of the key that is given instead
    pure function address_of(case, name, item) result(address)
+      type(case_t), intent(in) :: case
+      character(len=*), intent(in) :: name
+      !> Index of its material, if it has one; 0: none
+      integer, intent(in) :: item
+      !> The address; nowhere if there is no such key
+      type(address_t) :: address
+
+      type(address_t) :: other
+      integer :: row
+
+      address = address_by_name(case, name, item)
+      if (address%group == 0) return
+      do row = first_row(address%group), last_row(address%group)
+         if (catalogue(row)%name /= catalogue(address%row)%instead .and. &
+             catalogue(row)%instead /= name) cycle
+         other = case%address(groups(address%group)%name, trim(catalogue(row)%name), address%item)
+         if (case%given(groups(address%group)%name, trim(catalogue(row)%name), address%item)) &
+            address = other
+      end do
+   end function address_of
+
+   !> Address of the key with the name of an argument
+   pure function address_by_name(case, name, item) result(address)
       type(case_t), intent(in) :: case
       character(len=*), intent(in) :: name
       !> Index of its material, if it has one; 0: none
@@ -135,6 +159,6 @@ contains
          if (.not. groups(group)%repeated) address = case%address(groups(group)%name, name)
          if (address%group > 0) return
       end do
-   end function address_of
+   end function address_by_name
 
 end module vcor_case_cause

@@ -54,6 +54,7 @@ module vcor_case_checks
       limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
+      limits_t('sphere', 'diameter', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('sphere', 'punch_radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'half_thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('material', 'reference_temperature', 'K', 100.0_wp, endless, celsius, ''), &

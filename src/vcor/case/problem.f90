@@ -52,7 +52,7 @@ module vcor_case_problem
 
    !> Addresses of the numbers from which an impact is made
    type :: numbers_t
-      type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
+      type(address_t) :: velocity, drop_height, gravity, radius, diameter, mass, surface_radius
       !> Of the materials of sphere and plate
       type(address_t) :: density(2), yield_strength(2)
       type(address_t) :: half_thickness, thickness, half_angle, punch_radius
@@ -125,6 +125,7 @@ contains
       self%at%drop_height = case%address('impact', 'drop_height')
       self%at%gravity = case%address('impact', 'gravity')
       self%at%radius = case%address('sphere', 'radius')
+      self%at%diameter = case%address('sphere', 'diameter')
       self%at%mass = case%address('sphere', 'mass')
       self%at%half_angle = case%address('sphere', 'half_angle')
       self%at%punch_radius = case%address('sphere', 'punch_radius')
@@ -387,6 +388,8 @@ contains
       if (.not. allocated(error)) call update_body(self%plate, case, self%reading, error)
       if (allocated(error)) return
       self%radius = self%reading%number(case, self%at%radius)
+      if (ieee_is_nan(self%radius)) &
+         self%radius = 0.5_wp*self%reading%number(case, self%at%diameter)
       self%half_thickness = 0.0_wp
       if (.not. self%plate%material%rigid) then
          self%half_thickness = positive_or_zero(self%reading%number(case, self%at%half_thickness))

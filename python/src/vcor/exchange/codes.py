@@ -35,7 +35,7 @@ from .._library import (
     numbers,
     whole,
 )
-from ..case import Case, as_case, number
+from ..case import Case, as_case, number, radius_of
 from .contact_laws import ACCURACY, LAWS, Twin
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -362,7 +362,7 @@ def _comment(line: str, ending: str) -> str:
 
 def _radii(case: Case) -> tuple[float, float]:
     """Radii of the sphere and of the other body [m], 0 for a wall."""
-    return number(case, "sphere.radius", 0.0), number(case, "plate.surface_radius", 0.0)
+    return radius_of(case, 0.0), number(case, "plate.surface_radius", 0.0)
 
 
 def _base(case: Case) -> str:

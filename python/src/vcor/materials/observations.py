@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
 from .._text import near
-from ..case import Case, arrays, number
+from ..case import Case, arrays, number, radius_of
 from .data import Columns, Units, curves, read_data, tensile
 
 
@@ -221,7 +221,7 @@ class Record:
         if math.isfinite(given):
             return given
         density = number(impact, f"{impact['sphere.material']}.density")
-        return 4 / 3 * math.pi * density * number(impact, "sphere.radius") ** 3
+        return 4 / 3 * math.pi * density * radius_of(impact) ** 3
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Data for each row of values at the addresses, shape (rows, n); nan without result."""
