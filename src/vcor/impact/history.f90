@@ -94,7 +94,8 @@ contains
       step = trajectory%state(col_time, trajectory%last)/real(law_steps, wp)
       allocate (depth(0:law_steps), source=unset)
       if (.not. impact%law%receding) return
-      do i = 0, law_steps
+      s(0) = 0.0_wp
+      do i = 1, law_steps
          s(i) = trajectory%indentation_at(real(i, wp)*step)
       end do
       kernel = impact%kernel_step_integrals(step, law_steps)

@@ -201,15 +201,15 @@ contains
       real(wp), intent(in) :: equal, short
       real(wp) :: distance
 
-      real(wp) :: ratio
-
       distance = max(abs(limit(equal, short) - limit(long, middle)), abs(equal - middle))
-      if (.not. abs(middle - long) > 2.0_wp*abs(short - equal)) then
-         distance = max(distance, 2.0_wp/3.0_wp*abs(short - equal))
-      else
-         ratio = (middle - long)/(short - equal)
-         distance = max(distance, abs(short - equal)*(1.0_wp/(ratio - 1.0_wp) - 1.0_wp/3.0_wp))
-      end if
+      associate (before => middle - long, now => short - equal)
+         if (abs(before) > 2.0_wp*abs(now)) then
+            ! the rest of a geometric series less the third that extrapolation takes away
+            distance = max(distance, abs(now)*(now/(before - now) - 1.0_wp/3.0_wp))
+         else
+            distance = max(distance, 2.0_wp/3.0_wp*abs(now))
+         end if
+      end associate
    end function distance
 
    !> Mesh of a level: twice the steps of the level before, with more springs and hats. The response
