@@ -6,8 +6,9 @@ import pytest
 import vcor
 from vcor.materials.fit import fit_samples, moduli_at
 from vcor.materials.laws import LAWS, fit_law
+from vcor.materials.misfit import are_alike
 from vcor.materials.prony import fit_series
-from vcor.materials.samples import Samples, is_structured
+from vcor.materials.samples import Samples
 
 TRUTH = {
     "sls": {"glassy_modulus": 15e6, "alpha": 300.0, "beta": 1200.0},
@@ -169,11 +170,16 @@ def test_noise_is_taken_for_structure_once_in_a_thousand():
         # noise that storage and loss modulus share
         draws = np.tile(rng.standard_normal((4000, m)), 2)
         draws = draws - draws @ q @ q.T
-        assert sum(is_structured(r, np.concatenate([basis, basis]), m) for r in draws) <= 14
+        assert sum(are_alike(r, np.concatenate([basis, basis]), m) for r in draws) <= 14
+        alone = np.linalg.qr(basis)[0]
+        draws = rng.standard_normal((4000, m))
+        draws -= draws @ alone @ alone.T
+        assert sum(are_alike(r, basis) for r in draws) <= 14
     waves = np.tile(np.cos(6 * x), 2)
     waves -= q @ (q.T @ waves)
-    assert is_structured(waves, np.concatenate([basis, basis]), m)
-    assert not is_structured(1e-3 * waves, np.concatenate([basis, basis]), m)
+    assert are_alike(waves, np.concatenate([basis, basis]), m)
+    assert sum(are_alike(r + 3 * np.sin(10 * x), basis) for r in draws[:100]) >= 98
+    assert not are_alike(np.zeros(m), basis) and not are_alike(draws[0, :6], basis[:6])
 
 
 @pytest.mark.parametrize("dynamic", [False, True])

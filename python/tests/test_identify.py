@@ -12,7 +12,6 @@ from conftest import ROOT
 import vcor
 from vcor.materials import identification
 from vcor.materials.data import read_data
-from vcor.materials.misfit import are_alike
 from vcor.materials.observations import read_columns
 
 DATA = ROOT / "python" / "tests" / "data"
@@ -373,18 +372,6 @@ def test_records_on_a_baseline(sls, offset, sign, mass):
     assert ("turned over" in str(found)) is (sign < 0)
     assert "no noise" not in str(found) and not found.alike
     assert f"a baseline of {sign * offset * (mass or 1):.2g}"[:-1] in str(found)
-
-
-def test_noise_is_hardly_ever_called_alike():
-    """One draw of a thousand for noise, all draws for waves."""
-    rng, at = np.random.default_rng(5), np.linspace(0, 1, 40)
-    basis = np.vander(at, 3)
-    q = np.linalg.qr(basis)[0]
-    draws = rng.standard_normal((4000, 40))
-    draws -= draws @ q @ q.T
-    assert sum(are_alike(r, basis) for r in draws) <= 14
-    assert sum(are_alike(r + 3 * np.sin(20 * at), basis) for r in draws[:100]) >= 98
-    assert not are_alike(np.zeros(40), basis) and not are_alike(draws[0, :6], basis[:6])
 
 
 def test_misfits_that_are_no_noise(sls):

@@ -8,7 +8,8 @@ import pytest
 
 import vcor
 from vcor.materials import master
-from vcor.materials.shifting import Curve
+from vcor.materials.data import read_moduli
+from vcor.materials.shifting import Curve, log_shift
 
 C1, C2, REFERENCE = 12.0, 80.0, 293.15
 
@@ -94,8 +95,8 @@ def test_a_file_with_a_temperature_in_its_name(tmp_path):
     path = tmp_path / "epdm@20C.csv"
     path.write_text(table(f"T [C],{HEAD}", [10, 20]))
     assert len(vcor.master(path).temperatures) == 2
-    cold = master.read_curves(f"{file_of(tmp_path / 'a@b.csv', [5])}@-20C")
-    assert [curve.temperature for curve in cold] == [pytest.approx(253.15)]
+    cold = read_moduli(f"{file_of(tmp_path / 'a@b.csv', [5])}@-20C")
+    assert [curve.attrs["temperature"] for curve in cold] == [pytest.approx(253.15)]
 
 
 def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
@@ -139,6 +140,69 @@ def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
     lines = [line for line in text.splitlines() if "shift_file" not in line]
     by_law = vcor.Case("\n".join(lines) + "\n").solve()["cor"]
     assert by_table == pytest.approx(by_law, abs=2e-3)
+
+
+def test_a_fit_shifts_by_the_same_code(tmp_path, capsys, program):
+    path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 5), noise=0.01)
+    model = {"model": "mittag_leffler", "name": "rubber"}
+    fit = vcor.fit(path, **model)
+    master.main([str(path), "--output", str(tmp_path)])
+    other = vcor.fit(tmp_path / "raw_master.csv", **model)
+    assert fit.group.count("\n   wlf_c1 = ") == 1
+    assert fit.group == other.group or fit["exponent"] == pytest.approx(other["exponent"], rel=1e-6)
+    assert fit["exponent"] == pytest.approx(0.4, abs=0.02)
+    text = program("fit", path, "--model", "sls", "--fix", "glassy_modulus=1e9")
+    assert "12 curves from 0 to 55 C are shifted to 30 C by WLF" in text
+    assert "vcor identify fits moduli and shift at once" in text
+    capsys.readouterr()
+
+
+def test_a_fit_of_shifts_without_a_law_names_master(tmp_path):
+    shifts = {0: 2.0, 10: 0.3, 20: 0.2, 30: -2.0, 40: -2.2, 50: -4.0}
+
+    def odd(at, t):
+        p = (1j * at * 10 ** shifts[t]) ** 0.4
+        return (1e6 + 1e9 * p / (1 + p)).real, (1e9 * p / (1 + p)).imag
+
+    path = tmp_path / "odd.csv"
+    path.write_text(table(f"T [C],{HEAD}", shifts, odd))
+    with pytest.raises(vcor.InputError, match=r"no law; vcor master .*odd.csv writes them"):
+        vcor.fit(path)
+
+
+def test_columns_and_units_and_what_was_taken(tmp_path, capsys):
+    path = tmp_path / "odd.csv"
+    path.write_text(table("T [C],rate,a,b\n", [0, 10, 20]))
+    words = [str(path), "--output", str(tmp_path), "--reference", "10C", "--units", "rad/s,Pa"]
+    with pytest.raises(SystemExit):
+        master.main(words)
+    assert "--columns" in capsys.readouterr().err
+    words += ["--columns", "frequency=rate", "--columns", "storage_modulus=a,loss_modulus=b"]
+    master.main(words)
+    taken = capsys.readouterr().out.splitlines()[0]
+    assert "odd.csv: 36 points: temperature from 'T [C]', frequency from 'rate'" in taken
+    plain = tmp_path / "plain.csv"
+    plain.write_text(table(f"T [C],{HEAD}", [0, 10, 20]))
+    wanted = vcor.master(plain, reference_temperature=283.15)
+    found = json.loads((tmp_path / "odd_master.json").read_text())
+    assert found["log10_shift"] == wanted.log_shift.tolist()
+
+
+@pytest.mark.parametrize(
+    ("law", "values"),
+    [("WLF", {"wlf_c1": 12.0, "wlf_c2": 80.0}), ("Arrhenius", {"activation_energy": 7e4})],
+)
+def test_laws_are_those_of_the_library(law, values):
+    case = vcor.Case({"impact": {"velocity": 1.0, "temperature": 300.0}, "sphere": {"radius": 1.0,
+                      "material": "m"}, "plate": {"material": "m", "waves": "none"}, "material": [
+                      {"name": "m", "model": "sls", "glassy_modulus": 2.0, "alpha": 1.0,
+                       "beta": 2.0, "poisson_ratio": 0.5, "density": 1.0, "shift": law.lower(),
+                       "reference_temperature": REFERENCE, **values}]})  # fmt: skip
+    t = np.array([270.0, 293.15, 330.0])
+    found = log_shift(list(values.values()), t, REFERENCE)
+    for one, shift in zip(t, found, strict=True):
+        case["impact.temperature"] = one
+        assert np.log10(case.material("m").time_factor()) == pytest.approx(shift, abs=1e-13)
 
 
 def test_three_temperatures_fix_the_constants_of_wlf_and_a_fourth_tests_them(tmp_path):

@@ -14,9 +14,8 @@ from typing import NoReturn
 
 from .._library import InputError, UsageError, printable
 from ..case import _written
+from ..materials.units import GAS
 
-#: Gas constant [J/(mol K)]
-GAS = 8.31446261815324
 #: Sizes of the units of length, mass and time [m], [kg], [s]
 UNITS = {
     "SI": (1.0, 1.0, 1.0),

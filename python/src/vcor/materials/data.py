@@ -136,6 +136,8 @@ def read_moduli(
         )
     data = tensile(data, poisson_ratio, shear=shear)
     found = curves(data)
+    for one in found:
+        one.attrs["given"] = given
     if given:
         if len(found) > 1:
             raise InputError(f"{path}: found {len(found)} curves, expected one at {given}")

@@ -9,7 +9,7 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,9 +19,13 @@ from .._text import document, near
 from ..case import Case, Material, _written, scalars
 from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
+from .master import curve_of, of_curves
 from .prony import MOST_TERMS, fit_series
 from .samples import Samples
 from .units import ZERO_C
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Poisson's ratio of rubber, which is incompressible
 INCOMPRESSIBLE = 0.5
@@ -180,11 +184,8 @@ def samples_of(
                          "frequency, storage and loss modulus")  # fmt: skip
     parts = curves(tensile(table, poisson_ratio, shear=shear))
     if len(parts) > 1:
-        places = [f"{round(one.attrs['temperature'] - ZERO_C, 2) + 0.0:g}" for one in parts]
-        raise InputError(
-            f"{source}: found {len(parts)} curves, at {', '.join(places)} C, expected one; vcor "
-            f"master {source} makes one of them, NAME_master.csv for vcor fit"
-        )
+        samples, note = _shifted(parts, source)
+        return samples, source, [note]
     keys = tuple(
         found[1].strip()
         for line in table.attrs.get("remarks", ())
@@ -194,6 +195,26 @@ def samples_of(
     at = parts[0]["frequency" if kind == "dynamic" else "time"].to_numpy(dtype=float)
     moduli = parts[0][names].to_numpy(dtype=float).T
     return Samples(at, np.ascontiguousarray(moduli), keys), source, []
+
+
+def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:
+    """Samples of curves at several temperatures: their master curve, and what was done."""
+    if any(math.isnan(one.attrs["temperature"]) for one in parts):
+        raise InputError(f"{source}: found {len(parts)} curves without temperatures, expected one")
+    found = of_curves([curve_of(one) for one in parts], source)
+    if found.law is None:
+        raise InputError(
+            f"{source}: the shifts between its {len(parts)} temperatures follow no law; vcor "
+            f"master {source} writes them as a table, and NAME_master.csv for vcor fit"
+        )
+    at, *moduli = found.curve()
+    celsius = [found.temperatures[i] - ZERO_C for i in (0, -1)]
+    reference = found.reference_temperature - ZERO_C
+    note = (
+        f"  note: {len(parts)} curves from {celsius[0]:.4g} to {celsius[1]:.4g} C are shifted to "
+        f"{reference:.4g} C by {found.law.name} (vcor master says more)"
+    )
+    return Samples(at, np.array(moduli), tuple(found.lines(""))), note
 
 
 def _samples_of_arrays(data: Any) -> Samples:

@@ -318,9 +318,7 @@ def _alike(problem: Problem, x: Floats, derivatives: Floats) -> tuple[str, ...]:
             # the baseline and the start are fitted, too
             more = [1 / problem.sigma[part], np.gradient(predicted[part], block.at)]
             own = np.column_stack([own, *more])
-        n = len(block.value) // len(set(block.quantity))
-        parts = range(0, len(own), n)
-        if any(are_alike(r[part][i : i + n], own[i : i + n]) for i in parts):
+        if are_alike(r[part], own, len(block.value) // len(set(block.quantity))):
             found.append(block.source)
     return tuple(found)
 

@@ -7,6 +7,7 @@ is thermorheologically simple.
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 import os
 import re
@@ -14,15 +15,18 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, within
-from .data import kelvin, read_moduli
+from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .units import ZERO_C
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Temperature below which one in kelvin is taken for a slip [K]
 COLDEST = 100.0
@@ -49,6 +53,8 @@ class Master:
     vertical: bool = False
     #: What was found where storage and loss moduli tell different shifts
     apart: tuple[str, ...] = ()
+    #: What was taken of each file
+    taken: tuple[str, ...] = ()
 
     def curve(self) -> tuple[Floats, ...]:
         """Reduced frequency and moduli, or reduced time and modulus, in rising order.
@@ -92,6 +98,10 @@ class Master:
             "valid_temperature_to": float(self.temperatures.max()),
         }
 
+    def lines(self, table: str) -> list[str]:
+        """Keys of a &material as a namelist has them."""
+        return [f"{key} = {_value(x)}" for key, x in self.keys(table).items()]
+
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
         return _text.document(
@@ -107,7 +117,7 @@ class Master:
 
     def __str__(self) -> str:
         kelvin = self.reference_temperature
-        lines = [f"reference temperature {kelvin:.2f} K ({kelvin - ZERO_C:.2f} C)", ""]
+        lines = [*self.taken, f"reference temperature {kelvin:.2f} K ({kelvin - ZERO_C:.2f} C)", ""]
         lines.append(f"{'T [K]':>10s}{'T [C]':>10s}{'log10 a_T':>12s}{'error':>8s}")
         lines += [
             f"{t:10.2f}{t - ZERO_C:10.2f}{shift:12.4f}"
@@ -176,6 +186,8 @@ def master(
     *,
     reference_temperature: float | None = None,
     poisson_ratio: float | None = None,
+    columns: Columns = None,
+    units: Units = None,
 ) -> Master:
     """Master curve of moduli at several temperatures, as `vcor master` makes it.
 
@@ -187,6 +199,8 @@ def master(
         [K], one of those of the data within 3 K is taken; None: that in their middle.
     poisson_ratio
         Poisson's ratio, by which shear moduli become tensile ones; needed for them only.
+    columns, units
+        Which columns of the files are what, and their units, as for `vcor.read_data`.
 
     Returns
     -------
@@ -204,8 +218,15 @@ def master(
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     if poisson_ratio is not None:
         within(poisson_ratio, "--poisson-ratio", -1, 0.5)
-    read = (one for name in names for one in read_curves(name, poisson_ratio))
-    return of_curves(list(read), str(names[0]), reference_temperature)
+    read = [
+        one
+        for name in names
+        for one in read_moduli(name, columns, units, poisson_ratio=poisson_ratio)
+    ]
+    found = of_curves([curve_of(one) for one in read], str(names[0]), reference_temperature)
+    return dataclasses.replace(
+        found, taken=tuple(dict.fromkeys(one.attrs["taken"] for one in read))
+    )
 
 
 def of_curves(
@@ -263,20 +284,17 @@ def of_curves(
     )
 
 
-def read_curves(name: str | os.PathLike[str], poisson_ratio: float | None = None) -> list[Curve]:
-    """Curves of a file, one per temperature; a file without temperatures is one curve at nan."""
-    found = []
-    for data in read_moduli(name, poisson_ratio=poisson_ratio):
-        dynamic = data.attrs["kind"] == "dynamic"
-        # frequencies rise; times fall, as their frequencies rise
-        data = data if dynamic else data[::-1]
-        names = ["storage_modulus", "loss_modulus"] if dynamic else ["relaxation_modulus"]
-        at = data["frequency" if dynamic else "time"].to_numpy()
-        temperature = data.attrs["temperature"]
-        given = str(data.attrs["names"].get("temperature", name))
-        celsius = re.search(r"(?i)K\W*$|kelvin", given) is None
-        found.append(Curve(temperature, dynamic, at, data[names].to_numpy().T.copy(), celsius))
-    return found
+def curve_of(data: pd.DataFrame) -> Curve:
+    """Curve of data at one temperature, nan if they have none."""
+    dynamic = data.attrs["kind"] == "dynamic"
+    # frequencies rise; times fall, as their frequencies rise
+    data = data if dynamic else data[::-1]
+    names = ["storage_modulus", "loss_modulus"] if dynamic else ["relaxation_modulus"]
+    at = data["frequency" if dynamic else "time"].to_numpy()
+    given = str(data.attrs["names"].get("temperature", data.attrs.get("given", "")))
+    celsius = re.search(r"(?i)K\W*$|kelvin", given) is None
+    moduli = data[names].to_numpy().T.copy()
+    return Curve(data.attrs["temperature"], dynamic, at, moduli, celsius)
 
 
 def _parser() -> _command.Parser:
@@ -293,31 +311,30 @@ def _parser() -> _command.Parser:
     add("--reference", metavar="TEMPERATURE", help="such as 20C or 293.15K; default: the middle")
     what = "for shear moduli: Poisson's ratio, by which they become tensile ones"
     add("--poisson-ratio", type=float, metavar="NU", help=what)
+    add_data_options(parser)
     return parser
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Command `vcor master`; exits with the codes of the program."""
-    # argparse takes -5C for an option
     words = list(sys.argv[1:] if arguments is None else arguments)
-    if "--reference" in words[:-1]:
-        i = words.index("--reference")
-        words[i : i + 2] = [f"--reference={words[i + 1]}"]
     with _command.one_line():
-        _work(_parser().options(words))
+        _work(_parser().options(_command.joined(words, "--reference")))
 
 
 def _work(options: argparse.Namespace) -> None:
     given = options.reference
     reference = kelvin(given, "--reference") if given is not None else None
     ratio = options.poisson_ratio
-    found = master(options.data, reference_temperature=reference, poisson_ratio=ratio)
+    found = master(
+        options.data, reference_temperature=reference, poisson_ratio=ratio,
+        columns=columns_option(options.columns), units=options.units,
+    )  # fmt: skip
     dynamic = found.curves[0].dynamic
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
     reference = found.reference_temperature
     stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
-    shift = found.keys(f"{stem}_shift.csv").items()
-    pairs = [f"{key} = {_value(x)}" for key, x in shift]
+    pairs = found.lines(f"{stem}_shift.csv")
     keys = "".join(f"# &material {pair}\n" for pair in pairs)
     texts = {
         ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n" + _rows(found.curve()),

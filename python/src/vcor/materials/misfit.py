@@ -14,39 +14,48 @@ SIGNIFICANT = 3.1
 LEAST_EXCESS = 5
 
 
-def are_alike(r: Floats, derivatives: Floats) -> bool:
-    """Whether neighbouring misfits of a sequence are more alike than noise leaves them.
+def are_alike(r: Floats, derivatives: Floats, points: int | None = None) -> bool:
+    """Whether neighbouring misfits are more alike than noise leaves them.
 
-    The correlation rho = sum r_i r_(i+1)/sum r_i^2 is compared with that of independent noise e of
-    one variance after a fit of p parameters, r = M e with the projection M orthogonal to the
-    derivatives. With A r the mean of the two neighbours, rho = r'A r/r'r has the mean tr(MA)/n and
-    the variance 2 (tr(MAMA) - tr(MA)^2/n)/(n (n + 2)), n = m - p (Durbin and Watson, Biometrika 37
-    (1950) 409, doi:10.1093/biomet/37.3-4.409).
+    Noise is independent from point to point, while a wrong model errs in the same direction over
+    many. So the test uses not the size of the misfits but their correlation with the next one,
+    rho = sum r_i r_(i+1)/sum r_i^2, in their order. For noise it would be 0, but a fit has removed
+    the smooth part that its p parameters could follow. Let r = M e with independent noise e of one
+    variance and the projection M orthogonal to the derivatives, and let A r be the mean of the two
+    neighbours, so rho = r'A r/r'r. Then rho has the mean tr(MA)/n and the variance
+    2 (tr(MAMA) - tr(MA)^2/n)/(n (n + 2)), n = m - p, for any number m of points (Durbin and Watson,
+    Biometrika 37 (1950) 409, doi:10.1093/biomet/37.3-4.409).
 
     Parameters
     ----------
     r
-        Misfits in their order, shape (m,).
+        Misfits, one sequence or several in turn, shape (m,).
     derivatives
-        By all that was fitted, shape (m, p).
+        By all that was fitted, of full rank, shape (m, p).
+    points
+        Length of a sequence; None: there is one.
     """
     m, p = derivatives.shape
+    length = points or m
     if m < p + LEAST_EXCESS or not r @ r > 0:
         return False
 
     def neighbours(columns: Floats) -> Floats:
         """Mean of the two neighbours of each number; a missing one counts as 0."""
         means = np.zeros_like(columns)
-        means[:-1] += columns[1:] / 2
-        means[1:] += columns[:-1] / 2
+        for i in range(0, m, length):
+            means[i : i + length - 1] += columns[i + 1 : i + length] / 2
+            means[i + 1 : i + length] += columns[i : i + length - 1] / 2
         return means
 
     q = np.linalg.qr(derivatives)[0]
     aq = neighbours(q)
     g = q.T @ aq
-    n = m - p
+    sequences, n = m // length, m - p
     mean = -float(np.trace(g)) / n
-    square = 0.5 * (m - 1) - 2 * float(np.sum(aq**2)) + float(np.sum(g**2))
+    square = 0.5 * (m - sequences) - 2 * float(np.sum(aq**2)) + float(np.sum(g**2))
     rho = float(r @ neighbours(r) / (r @ r))
-    deviation = math.sqrt(max(0.0, 2 * (square - n * mean**2) / (n * (n + 2))))
+    # storage and loss modulus may share their noise, or one has nearly all of it: in both cases the
+    # variance is that of one sequence
+    deviation = math.sqrt(max(0.0, sequences * 2 * (square - n * mean**2) / (n * (n + 2))))
     return bool(rho - mean > SIGNIFICANT * deviation)

@@ -9,16 +9,13 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from .._library import Floats, NumericalError
+from .misfit import are_alike
 
 #: Condition of the scaled derivatives above which parameters are not determined: a change of the
 #: data by 1e-7 would leave them no common digit
 WORST_CONDITION = 1e7
 #: Root mean square misfit below the accuracy of any data, and one too large for noise of any kind
 NEGLIGIBLE, TOO_LARGE = 5e-3, math.log(2)
-#: Standard deviations above the mean that one fit of a thousand exceeds by chance
-SIGNIFICANT = 3.1
-#: Fewest residuals in excess of the parameters for a correlation to be significant
-LEAST_EXCESS = 5
 #: Distance from the end of a range, in a variable, within which it is tried whether it is reached
 BESIDE = 1e-3
 
@@ -124,8 +121,9 @@ class Problem:
         if condition(inner) > WORST_CONDITION:
             raise NumericalError("the data do not determine all parameters")
         variance = float(r @ r) / max(1, len(r) - inner.shape[1])
-        told = math.sqrt(r @ r / len(r)) > TOO_LARGE
-        return covariance(points), variance, told or is_structured(r, inner, len(self.samples.at))
+        rms = math.sqrt(r @ r / len(r))
+        told = rms > NEGLIGIBLE and are_alike(r, inner, len(self.samples.at))
+        return covariance(points), variance, told or rms > TOO_LARGE
 
 
 def condition(derivatives: Floats) -> float:
@@ -143,49 +141,3 @@ def covariance(derivatives: Floats) -> Floats:
     values = np.maximum(values, 1e-15 * values.max(initial=1e-300))
     found: Floats = (vectors.T / values**2) @ vectors / np.outer(lengths, lengths)
     return (found + found.T) / 2
-
-
-def is_structured(r: Floats, derivatives: Floats, points: int) -> bool:
-    """Whether neighbouring residuals are correlated too much for noise.
-
-    Noise is independent from point to point, while a wrong model errs in the same direction over
-    many. So the test uses not the size of the residuals but their correlation with the next one,
-    rho = sum r_i r_(i+1)/sum r_i^2, in order of time or frequency. For noise it would be 0, but the
-    fit has removed from the residuals the smooth part that its p parameters could follow. Let
-    r = M e with independent noise e of one variance and the projection M orthogonal to the
-    derivatives, and let A r be the mean of the two neighbours, so rho = r'A r/r'r. Then rho has the
-    mean tr(MA)/n and the variance 2 (tr(MAMA) - tr(MA)^2/n)/(n (n + 2)), n = m - p, for any number
-    m of points (Durbin and Watson, Biometrika 37 (1950) 409, doi:10.1093/biomet/37.3-4.409).
-
-    Parameters
-    ----------
-    r
-        Residuals, one or two sequences in turn, shape (m,).
-    derivatives
-        By the free parameters, of full rank, shape (m, p).
-    points
-        Length of a sequence.
-    """
-    m, p = derivatives.shape
-    if m < p + LEAST_EXCESS or math.sqrt(r @ r / m) <= NEGLIGIBLE:
-        return False
-
-    def neighbours(columns: Floats) -> Floats:
-        """Mean of the two neighbours of each number; a missing one counts as 0."""
-        means = np.zeros_like(columns)
-        for i in range(0, m, points):
-            means[i : i + points - 1] += columns[i + 1 : i + points] / 2
-            means[i + 1 : i + points] += columns[i : i + points - 1] / 2
-        return means
-
-    q = np.linalg.qr(derivatives)[0]
-    aq = neighbours(q)
-    g = q.T @ aq
-    sequences, n = m // points, m - p
-    mean = -np.trace(g) / n
-    square = 0.5 * (m - sequences) - 2 * np.sum(aq**2) + np.sum(g**2)
-    rho = r @ neighbours(r) / (r @ r)
-    # storage and loss modulus may share their noise, or one has nearly all of it: in both cases the
-    # variance is that of one sequence
-    deviation = math.sqrt(max(0.0, sequences * 2 * (square - n * mean**2) / (n * (n + 2))))
-    return bool(rho - mean > SIGNIFICANT * deviation)

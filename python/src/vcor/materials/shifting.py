@@ -18,8 +18,7 @@ import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from .._library import Floats, NumericalError
-from ..exchange.card_formats import GAS
-from .units import ZERO_C
+from .units import GAS, ZERO_C
 
 #: Degree of the polynomial over the logarithm of frequency that two curves share
 DEGREE = 4
@@ -138,17 +137,27 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
     moduli = np.log(cold.moduli), np.log(warm.moduli) - up
     y = np.concatenate([(w @ one).ravel() for w, one in zip(weights, moduli, strict=True)])
 
+    def misfits(shifts: Floats) -> Floats:
+        """Weighted sum of squares about polynomials through both curves for each shift."""
+        powers = np.arange(degree + 1)
+        rows = []
+        for weight, x in zip(weights, (cold.x[None], warm.x + shifts[:, None]), strict=True):
+            basis = ((x - middle) / span)[..., None] ** powers
+            both = np.einsum("ab,snp->sanbp", weight, basis)
+            both = both.reshape(len(basis), weight.shape[0] * x.shape[1], -1)
+            rows.append(np.broadcast_to(both, (len(shifts), *both.shape[1:])))
+        q = np.linalg.qr(np.concatenate(rows, axis=1))[0]
+        rest = y - (q @ (y @ q)[..., None])[..., 0]
+        squares: Floats = np.sum(rest**2, axis=1)
+        return squares
+
     def misfit(shift: float) -> float:
-        """Weighted sum of squares about polynomials through both curves."""
-        bases = (np.vander((x - middle) / span, degree + 1) for x in (cold.x, warm.x + shift))
-        rows = [np.kron(w, basis) for w, basis in zip(weights, bases, strict=True)]
-        q = np.linalg.qr(np.concatenate(rows))[0]
-        return float(np.sum((y - q @ (q.T @ y)) ** 2))
+        return float(misfits(np.array([shift]))[0])
 
     # a warmer material is faster: its curve belongs to lower frequencies of the colder one, beside
     # which it may end
     trials = np.linspace(cold.x[0] - warm.x[-1], 0.1 * span, 301)
-    values = np.array([misfit(trial) for trial in trials])
+    values = misfits(trials)
     best = int(np.argmin(values))
     dof = max(1, len(y) - len(cold.moduli) * (degree + 1) - 1)
     kind = "storage" if cold.dynamic else "relaxation"
@@ -215,7 +224,10 @@ class Law:
 
 
 def log_shift(values: Sequence[float] | Floats, t: Floats, reference: float) -> Floats:
-    """log10 a_T by the constants of a law: two of WLF, or one of Arrhenius."""
+    """log10 a_T by the constants of a law, two of WLF or one of Arrhenius.
+
+    As the library has it, for many trials of a search.
+    """
     shift: Floats
     if len(values) == 2:
         shift = -values[0] * (t - reference) / (values[1] + t - reference)

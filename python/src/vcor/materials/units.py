@@ -8,6 +8,8 @@ import unicodedata
 
 #: 0 C [K]
 ZERO_C = 273.15
+#: Gas constant [J/(mol K)]
+GAS = 8.31446261815324
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _POWERS = {prefix: 10.0**power for power, prefix in PREFIXES.items()}
 #: By SI unit: units that take a prefix, in SI units, and the prefixes
