@@ -334,7 +334,7 @@ def test_cards_that_others_wrote_for_ansys(tmp_path):
     assert "units SI" in found.remarks[0] and "0.35" in found.remarks[1]
     assert back(tmp_path, ANSYS, units="mm-t-s").glassy_modulus == pytest.approx(9115.8e12)
     user = ANSYS.replace("1,3,WLF", "1,5,USER")
-    with pytest.raises(vcor.InputError, match="some.card:11: found SHIFT USER"):
+    with pytest.raises(vcor.InputError, match="some.card:11: found TB,SHIFT of kind USER"):
         back(tmp_path, user)
     assert not back(tmp_path, user, use_shift=False).shift
     # MPWRITE after a fit: ratios alone
@@ -584,6 +584,39 @@ def test_neo_hooke(tmp_path, moduli, d1):
     nu = 0.5 if math.isinf(k) else (3 * k - 2 * g) / (2 * (3 * k + g))
     assert found.poisson_ratio == pytest.approx(nu)
     assert found.glassy_modulus == pytest.approx(2 * (1 + nu) * g)
+
+
+ANSYS_NEO = """MP,DENS,1,1.1e-9
+TB,HYPER,1,1,2,NEO
+TBDATA,1,2.0,0.1
+TB,PRONY,1,1,1,SHEAR
+TBDATA,1,0.7,1e-3
+"""
+
+
+@pytest.mark.parametrize("d", ["0.1", "", "0."])
+def test_neo_hooke_of_ansys(tmp_path, d):
+    """mu and d, with G = mu and K = 2/d at time zero."""
+    found = back(tmp_path, ANSYS_NEO.replace("2.0,0.1", f"2.0,{d}"), units="mm-t-s")
+    k = 2 / float(d) if d == "0.1" else math.inf
+    nu = 0.5 if math.isinf(k) else (3 * k - 4) / (2 * (3 * k + 2))
+    assert found.poisson_ratio == pytest.approx(nu)
+    assert found.glassy_modulus == pytest.approx(2e6 * 2 * (1 + nu))
+    assert found.moduli[0] == pytest.approx(0.7 * found.glassy_modulus)
+
+
+@pytest.mark.parametrize(
+    "old, new, says",
+    [
+        ("NEO", "MOONEY", "TB,HYPER of kind MOONEY, expected NEO"),
+        (",2,NEO", ",2", "TB,HYPER of kind none, expected NEO"),
+        ("TBDATA,1,2.0", "TBDATA,1,-2.0", ":2: found mu = -2"),
+        ("TB,PRONY", "MP,EX,1,3.0\nTB,PRONY", ":2: found TB,HYPER and MP,EX, expected one"),
+    ],
+)
+def test_wrong_options_of_ansys_are_named(tmp_path, old, new, says):
+    with pytest.raises(vcor.InputError, match=says):
+        back(tmp_path, ANSYS_NEO.replace(old, new))
 
 
 @pytest.mark.parametrize(

@@ -530,11 +530,23 @@ def _abaqus_constants(
         source.fail(line, f"found *HYPERELASTIC, {form or 'POLYNOMIAL'}, expected NEO HOOKE with "
                           "C10 and D1, or *ELASTIC")  # fmt: skip
     c10, d1 = [*rows[0], 0.0][:2]
-    if not (c10 > 0 and d1 >= 0):
-        source.fail(line, f"found C10 = {c10:g} and D1 = {d1:g}, expected C10 > 0 and D1 >= 0")
-    if d1 == 0:
-        source.remarks.append("D1 = 0: the material is incompressible, Poisson's ratio 0.5")
-    return 2 * c10, _ratio(2 / d1, 2 * c10) if d1 else 0.5
+    return _neo_hooke(source, line, {"C10": c10, "D1": d1}, 2 * c10)
+
+
+def _neo_hooke(
+    source: Source, line: int, constants: Mapping[str, float], shear: float
+) -> tuple[float, float]:
+    """Shear modulus and Poisson's ratio of a neo-Hookean solid, by two constants of a card.
+
+    The second one, D, is that of (J - 1)^2/D: the bulk modulus is 2/D.
+    """
+    (first, one), (second, d) = constants.items()
+    if not (one > 0 and d >= 0):
+        source.fail(line, f"found {first} = {one:g} and {second} = {d:g}, expected {first} > 0 and "
+                          f"{second} >= 0")  # fmt: skip
+    if d == 0:
+        source.remarks.append(f"{second} = 0: the material is incompressible, Poisson's ratio 0.5")
+    return shear, _ratio(2 / d, shear) if d else 0.5
 
 
 # ---------------------------------------------------------------------------------------- Ansys
@@ -583,8 +595,9 @@ def _read_ansys(source: Source) -> Card:
             at = 0
         elif what == "TB":
             current, at = [], 0
-            if label in ("PRON", "SHIF"):
-                kind = words[5].upper()[:4] if label == "PRON" else f"SHIFT {words[5].upper()}"
+            if label in ("PRON", "SHIF", "HYPE"):
+                option = words[5].upper()
+                kind = option[:4] if label == "PRON" else f"{label} {option}"
                 tables[number, kind] = i, source.number(i, words[4]), current
         elif what == "TBDATA":
             # without a location it goes on after the last one
@@ -612,13 +625,28 @@ def _read_ansys(source: Source) -> Card:
         lines = [properties[name, one] for one in labels if (name, one) in properties]
         return source.number(*lines[0], sums=True) if lines else None
 
+    def elastic() -> tuple[float, float]:
+        """Shear modulus at once and Poisson's ratio, by EX or by a neo-Hookean solid."""
+        for (number, kind), (line, _, texts) in tables.items():
+            if number != name or not kind.startswith("HYPE"):
+                continue
+            if (option := kind.partition(" ")[2]) not in ("NEO", "NEOHOOKEAN"):
+                source.fail(line, f"found TB,HYPER of kind {option or 'none'}, expected NEO with "
+                                  "mu and d, or MP,EX")  # fmt: skip
+            if constant("EX") is not None:
+                source.fail(line, "found TB,HYPER and MP,EX, expected one of them")
+            mu, d = [source.number(line, text) for text in [*texts, "0", "0"][:2]]
+            return _neo_hooke(source, line, {"mu": mu, "d": d}, mu)
+        modulus, ratio = source.elastic(constant("EX"), constant("PRXY", "NUXY"))
+        return modulus / (2 * (1 + ratio)), ratio
+
     shift = {}
     for (number, kind), (line, _, texts) in tables.items():
-        if number == name and kind.startswith("SHIFT") and source.use_shift:
-            wlf = kind == "SHIFT WLF"
-            if not wlf and kind != "SHIFT TN":
-                source.fail(line, f"found {kind}, of which the meaning is not in the card; "
-                               "expected WLF or TN, or --no-shift")  # fmt: skip
+        if number == name and kind.startswith("SHIF ") and source.use_shift:
+            wlf = kind == "SHIF WLF"
+            if not wlf and kind != "SHIF TN":
+                source.fail(line, f"found TB,SHIFT of kind {kind[5:]}, of which the meaning is not "
+                               "in the card; expected WLF or TN, or --no-shift")  # fmt: skip
             values = [source.number(line, text, sums=True) for text in texts]
             if len(values) != (3 if wlf else 2):
                 source.fail(line, f"found {len(values)} constants of TB,SHIFT")
@@ -626,8 +654,8 @@ def _read_ansys(source: Source) -> Card:
             values[0] = source.kelvin(values[0])
             shift = _law("wlf" if wlf else "arrhenius", *values)
             shift |= {} if wlf else {"remark": _TN}
-    modulus, ratio = source.elastic(constant("EX"), constant("PRXY", "NUXY"))
-    start, shear = modulus / (2 * (1 + ratio)), terms("SHEA")
+    start, ratio = elastic()
+    shear = terms("SHEA")
     rest = start * (1 - math.fsum(part for part, _ in shear))
     return source.card(
         tables[name, "SHEA"][0], [(start * part, time) for part, time in shear], rest,
