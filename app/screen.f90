@@ -2,8 +2,9 @@
 module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use vcor_case_grid, only : grid_t
-   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_trajectory, only : contact_separated
+   use vcor_impact_validity, only : level_caution, level_outside
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : quantities, quantity_place, quantity_t, &
@@ -17,12 +18,25 @@ module vcor_app_screen
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
-   !> Quantities of the first table, by name
-   character(len=*), parameter :: shown(*) = [character(len=20) :: 'cor', 'cor_sphere', &
-      'resilience', 'rebound_height', 'contact_time', 'max_indentation', 'max_force', &
-      'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio', &
-      'layer_stiffening', 'mean_pressure', 'min_frequency', 'inelasticity', 'loss_tangent', &
-      'peak_loss_tangent']
+   !> Name of a group of quantities, and the quantities
+   type :: block_t
+      character(len=24) :: title
+      character(len=20) :: names(6) = ''
+   end type block_t
+   integer :: i
+   !> The table of an impact
+   type(block_t), parameter :: blocks(*) = [ &
+      block_t('restitution', [character(len=20) :: 'cor_sphere', 'cor', 'resilience', &
+      'rebound_height', '', '']), &
+      block_t('motion', [character(len=20) :: 'contact_time', 'max_indentation', &
+      'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio']), &
+      block_t('force', [character(len=20) :: 'max_force', 'mean_pressure', 'layer_stiffening', &
+      '', '', '']), &
+      block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', 'loss_tangent', &
+      'min_frequency', 'inelasticity', '', ''])]
+   character(len=20), parameter :: all_names(*) = [(blocks(i)%names, i=1, size(blocks))]
+   !> Quantities of the table, by name
+   character(len=*), parameter :: shown(*) = pack(all_names, all_names /= '')
 
 contains
 
@@ -40,60 +54,127 @@ contains
       character(len=*), intent(in) :: files
       character(len=:), allocatable :: text
 
-      type(quantity_t), allocatable :: columns(:)
       integer :: i
 
-      allocate (columns, source=quantities())
       text = heading(filename, title)
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are in contact still at '//short(time)//' s ('//method//', ' &
             //integer_text(outcome%steps)//' steps), status '//trim(status_name(outcome%status))//nl
       else
-         do i = 1, size(shown)
-            if (ieee_is_nan(quantity_value(outcome, shown(i)))) cycle
-            associate (quantity => columns(quantity_place(shown(i))))
-               text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
-                  shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &
-                  remark(outcome, shown(i)))
-               if (shown(i) == 'cor' .and. exact%is_coupled()) cycle
-               if (i <= 2 .and. .not. ieee_is_nan(exact%cor)) text = text &
-                  //line('    with exact mechanics', 50, quantity%symbol, &
-                  quantity_value(exact, shown(i)), '', remark(exact, shown(i)))
-            end associate
+         text = text//answer(outcome, exact)//nl
+         do i = 1, size(blocks)
+            if (blocks(i)%title == 'what decides the loss') text = text//budget(outcome)//nl
+            text = text//block_text(blocks(i), outcome, exact)//nl
          end do
-         text = text//nl//budget(outcome)//nl//'  '//method//', ' &
-            //integer_text(outcome%steps)//' steps'//nl
+         text = text//'  '//method//', '//integer_text(outcome%steps)//' steps'//nl
       end if
       text = text//files//nl
+   end function report
+
+   !> The answer in one line: the coefficient of restitution that an experiment reads, whether the
+   !> model holds, and the exact value if that differs
+   function answer(outcome, exact) result(text)
+      type(outcome_t), intent(in) :: outcome, exact
+      character(len=:), allocatable :: text
+
+      text = '  e_a = '//significant(outcome%cor_sphere, digits_of(outcome, outcome%cor_sphere, &
+         outcome%cor_sphere_error), 0)//', the restitution of the sphere, as a drop test reads it'
+      if (outcome%validity == level_outside) text = text//'; outside the validity of the model'
+      if (outcome%validity == level_caution) text = text//'; with caution'
+      if (.not. ieee_is_nan(exact%cor_sphere)) text = text//'; with exact mechanics ' &
+         //significant(exact%cor_sphere, digits_of(exact, exact%cor_sphere, &
+         exact%cor_sphere_error), 0)
+      text = text//nl
+   end function answer
+
+   !> Lines of a group of quantities
+   function block_text(group, outcome, exact) result(text)
+      type(block_t), intent(in) :: group
+      type(outcome_t), intent(in) :: outcome, exact
+      character(len=:), allocatable :: text
+
+      type(quantity_t), allocatable :: columns(:)
+      integer :: k
+
+      allocate (columns, source=quantities())
+      text = '  '//trim(group%title)//nl
+      do k = 1, size(group%names)
+         associate (name => group%names(k))
+            if (name == '') exit
+            if (ieee_is_nan(quantity_value(outcome, name))) cycle
+            associate (quantity => columns(quantity_place(name)))
+               text = text//line('    '//quantity%meaning, 50, quantity%symbol, &
+                  shown_value(), merge('        ', quantity%unit, quantity%unit == '1'), &
+                  remark(outcome, name), digits_of(outcome, quantity_value(outcome, name), &
+                  error_of(outcome, name)))
+               if (all(name /= [character(len=10) :: 'cor', 'cor_sphere'])) cycle
+               if (name == 'cor' .and. exact%is_coupled()) cycle
+               if (ieee_is_nan(exact%cor)) cycle
+               text = text//line('      with exact mechanics', 50, quantity%symbol, &
+                  quantity_value(exact, name), '', remark(exact, name), &
+                  digits_of(exact, quantity_value(exact, name), error_of(exact, name)))
+            end associate
+         end associate
+      end do
 
    contains
 
       !> A number of the table; 0 if it is only rounding
-      function shown_value(name) result(value)
-         character(len=*), intent(in) :: name
+      function shown_value() result(value)
          real(wp) :: value
 
-         value = quantity_value(outcome, name)
-         if (name == 'residual_indentation') value = visible(value, outcome%max_indentation)
-         if (name == 'residual_ratio') value = visible(value, 1.0_wp)
+         value = quantity_value(outcome, group%names(k))
+         if (group%names(k) == 'residual_indentation') &
+            value = visible(value, outcome%max_indentation)
+         if (group%names(k) == 'residual_ratio') value = visible(value, 1.0_wp)
       end function shown_value
+   end function block_text
 
-      !> Remark after a number
-      function remark(found, name)
-         type(outcome_t), intent(in) :: found
-         character(len=*), intent(in) :: name
-         character(len=:), allocatable :: remark
+   !> Remark after a number
+   function remark(outcome, name)
+      type(outcome_t), intent(in) :: outcome
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: remark
 
-         remark = ''
-         if (name == 'cor') remark = '+- '//short(found%cor_error)//' numerical'
-         if (name == 'cor_sphere') remark = '+- '//short(found%cor_sphere_error)//' numerical'
-         if (name == 'cor_sphere' .and. found%cor_sphere > 0.0_wp) &
-            remark = remark//'; a drop test reads this'
-         if (name == 'contact_time') remark = rough_error(found%contact_time, &
-            found%contact_time_error)
-         if (name == 'max_force') remark = rough_error(found%max_force, found%max_force_error)
-      end function remark
-   end function report
+      remark = ''
+      if (name == 'cor') remark = '+- '//short(outcome%cor_error)//' numerical'
+      if (name == 'cor_sphere') remark = '+- '//short(outcome%cor_sphere_error)//' numerical'
+      if (name == 'contact_time') remark = rough_error(outcome%contact_time, &
+         outcome%contact_time_error)
+      if (name == 'max_force') remark = rough_error(outcome%max_force, outcome%max_force_error)
+   end function remark
+
+   !> Stated error of a quantity of the table; 0 for those without
+   pure function error_of(outcome, name) result(error)
+      type(outcome_t), intent(in) :: outcome
+      character(len=*), intent(in) :: name
+      real(wp) :: error
+
+      error = 0.0_wp
+      if (name == 'cor') error = outcome%cor_error
+      if (name == 'cor_sphere') error = outcome%cor_sphere_error
+      if (name == 'contact_time') error = outcome%contact_time_error
+      if (name == 'max_force') error = outcome%max_force_error
+   end function error_of
+
+   !> Digits that a number of the table carries: by the validity of the model, and no more than one
+   !> beyond its error
+   pure function digits_of(outcome, value, error) result(digits)
+      type(outcome_t), intent(in) :: outcome
+      real(wp), intent(in) :: value
+      !> Stated error; 0 or NaN if there is none
+      real(wp), intent(in) :: error
+      integer :: digits
+
+      ! below any error, so that nothing is divided by zero
+      real(wp), parameter :: least = 1.0e-20_wp
+
+      digits = 8
+      if (outcome%validity == level_caution) digits = 4
+      if (outcome%validity == level_outside) digits = 3
+      if (.not. (ieee_is_finite(error) .and. ieee_is_finite(value))) return
+      digits = max(2, min(digits, 1 + floor(log10(max(1.0_wp, abs(value)/max(error, least))))))
+   end function digits_of
 
    !> Remark on a number that is less accurate than a reader expects
    pure function rough_error(value, error) result(text)
@@ -122,7 +203,7 @@ contains
    end function heading
 
    !> One line of a table
-   pure function line(meaning, width, symbol, value, unit, remark) result(text)
+   pure function line(meaning, width, symbol, value, unit, remark, digits) result(text)
       !> Meaning, indented
       character(len=*), intent(in) :: meaning
       !> Width of its column
@@ -131,11 +212,13 @@ contains
       real(wp), intent(in) :: value
       character(len=*), intent(in) :: unit
       character(len=*), intent(in) :: remark
+      !> Digits of the number; absent: 8
+      integer, intent(in), optional :: digits
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: number
 
-      number = significant(value)
+      number = significant(value, digits)
       if (value > huge(value)) number = right('infinite', 16)
       text = padded(meaning, width)//padded(symbol, 8)//number
       if (.not. value > huge(value)) text = text//' '//padded(unit, 7)//remark
@@ -170,28 +253,32 @@ contains
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: doubt
+      integer :: d
 
-      text = line('  energy before the impact', 50, 'KE_0', outcome%initial_energy, 'J', '')
+      d = digits_of(outcome, 0.0_wp, none)
+      text = '  energy'//nl//line('    energy before the impact', 50, 'KE_0', &
+         outcome%initial_energy, 'J', '', d)
       if (abs(outcome%weight_work) > 0.0_wp) text = text//line('    gained by the weight', 50, &
-         'm g z', outcome%weight_work, 'J', share(outcome%weight_work))
+         'm g z', outcome%weight_work, 'J', share(outcome%weight_work), d)
       if (outcome%is_coupled()) then
          ! contact and waves are one
          text = text//line('    lost in contact and plate together', 50, 'W', &
-            visible(outcome%energy_loss, outcome%initial_energy), 'J', share(outcome%energy_loss))
+            visible(outcome%energy_loss, outcome%initial_energy), 'J', &
+            share(outcome%energy_loss), d)
       else
          doubt = ''
          if (visible(outcome%wave_energy, outcome%initial_energy) < 0.0_wp) &
             doubt = '; only W_h + W_wave is a loss'
          text = text//line('    lost in the contact (hysteresis)', 50, 'W_h', &
             visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
-            share(outcome%hysteresis_energy)) &
+            share(outcome%hysteresis_energy), d) &
             //line('    radiated into the plate', 50, 'W_wave', &
             visible(outcome%wave_energy, outcome%initial_energy), 'J', &
-            share(outcome%wave_energy)//doubt)
+            share(outcome%wave_energy)//doubt, d)
       end if
       text = text//line('    left to the sphere', 50, 'KE_1', outcome%final_energy, 'J', &
-         share(outcome%final_energy)) &
-         //line('    missing from the budget', 50, 'dW', outcome%energy_imbalance, 'J', '')
+         share(outcome%final_energy), d) &
+         //line('    energy imbalance', 50, 'dW', outcome%energy_imbalance, 'J', '', 2)
 
    contains
 
@@ -249,7 +336,7 @@ contains
          buffer = 'nan'
       else if (.not. abs(value) > 0.0_wp) then
          buffer = '0'
-      else if (abs(value) < 0.1_wp .or. abs(value) >= 10.0_wp**min(6, d - 1)) then
+      else if (abs(value) < 0.1_wp .or. abs(value) >= 10.0_wp**min(6, d)) then
          buffer = scientific(value, d - 1)
       else
          ! count the digits before the point of the rounded number, as for 0.9999999999
@@ -258,6 +345,7 @@ contains
          write (buffer, form) value
       end if
       buffer = adjustl(buffer)
+      if (buffer(max(1, len_trim(buffer)):) == '.') buffer(len_trim(buffer):) = ' '
       text = repeat(' ', max(0, w - len_trim(buffer)))//trim(buffer)
    end function significant
 

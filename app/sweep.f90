@@ -7,8 +7,9 @@ module vcor_app_sweep
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : coordinates, heading, padded, right, shown, significant
-   use vcor_app_validity, only : about_numbers, joined, points_remark, points_report, &
-      warn_of_bands
+   use vcor_app_validity, only : about_numbers, joined, exact_points, points_remark, &
+      points_report, warn_of_bands
+   use vcor_case_grid, only : grid_t
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_io_file, only : stderr_is_terminal, write_stdout, write_terminal
@@ -133,7 +134,9 @@ contains
       if (size(request%names) > 0) then
          validity = points_remark(job%sweep%grid, summary)
       else
-         validity = points_report(job%sweep%grid, summary)
+         validity = points_report(job%sweep%grid, summary, job%sweep%problem%surroundings)
+         if (.not. request%quiet .and. job%method /= 'coupled') &
+            validity = validity//exact_points(job%case, job%sweep%grid, summary)
       end if
       call job%case%get('case', 'title', title)
       call summary_table(tables(1), title, case_text(job%case, complete=.true.), job%sweep%grid, &
@@ -198,7 +201,7 @@ contains
       call job%case%get('solver', 'method', method)
       if (method /= 'auto' .or. job%method /= 'ive') method = job%method
       text = text//nl//'  '//integer_text(job%sweep%grid%count())//' impacts, '//method//nl
-      text = text//nl//ranges(summary)
+      text = text//nl//ranges(job%sweep%grid, summary)
       if (failures%count > 0) text = text//nl//failed_points(job, failures)
       if (len(validity) > 0) text = text//nl//validity
       if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
@@ -209,41 +212,56 @@ contains
       text = text//nl
    end function report
 
-   !> Smallest and largest outcomes
-   function ranges(summary) result(text)
+   !> Smallest and largest outcomes, and where they are: values of the parameter, or numbers of the
+   !> points where there are several parameters
+   function ranges(grid, summary) result(text)
+      type(grid_t), intent(in) :: grid
       type(table_t), intent(in) :: summary
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: line
       real(wp) :: least, most
       type(quantity_t), allocatable :: columns(:)
-      logical :: any_there
-      integer :: i, k
+      integer :: first, last, i, k
 
       allocate (columns, source=quantities())
-      text = padded('', 58)//'        smallest         largest'//nl
+      text = padded('', 58)//'        smallest         at         largest         at'//nl
+      if (size(grid%axes) > 1) text = padded('', 58) &
+         //'        smallest   at point         largest   at point'//nl
       do i = 1, size(shown)
          associate (quantity => columns(quantity_place(shown(i))), &
                     column => summary%columns(place_in_table(summary, trim(shown(i))) &
                     - size(summary%dimensions)))
-            any_there = .false.
+            first = 0
             do k = 1, column%length
                if (ieee_is_nan(column%reals(k))) cycle
-               if (.not. any_there) then
-                  least = column%reals(k)
-                  most = least
+               if (first == 0) then
+                  first = k
+                  last = k
                end if
-               any_there = .true.
-               least = min(least, column%reals(k))
-               most = max(most, column%reals(k))
+               if (column%reals(k) < column%reals(first)) first = k
+               if (column%reals(k) > column%reals(last)) last = k
             end do
-            if (.not. any_there) cycle
+            if (first == 0) cycle
+            least = column%reals(first)
+            most = column%reals(last)
             line = padded('  '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
-               //significant(least)//significant(most)
+               //significant(least)//where_is(first)//significant(most)//where_is(last)
             if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
             text = text//line//nl
          end associate
       end do
+
+   contains
+
+      !> Place of a point
+      function where_is(point) result(place)
+         integer, intent(in) :: point
+         character(len=:), allocatable :: place
+
+         place = right(integer_text(point), 11)
+         if (size(grid%axes) == 1) place = significant(grid%axes(1)%values(point), 5, 11)
+      end function where_is
    end function ranges
 
    !> Points without a result, by their status

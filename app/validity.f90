@@ -13,7 +13,7 @@ module vcor_app_validity
    use vcor_case_checks, only : implausible_numbers, note_length
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_t
-   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_validity, only : judged, level_caution, level_good, level_of, level_outside, &
       levels, surroundings_t, thresholds
@@ -29,10 +29,16 @@ module vcor_app_validity
    private
 
    public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
-      points_remark, about_numbers, joined, warn_of_input, warn_of_bands, beyond_data
+      points_remark, exact_points, about_numbers, joined, warn_of_input, warn_of_bands, beyond_data
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
+   !> Columns of a point that its validity depends on
+   character(len=*), parameter :: measures(*) = [character(len=20) :: &
+      'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
+      'energy_loss', 'energy_imbalance', 'contact_ratio', 'thickness_ratio', &
+      'plate_wave_number', 'needed_extent', 'deflection_ratio', 'weight_ratio', &
+      'mean_pressure', 'half_space_loss', 'bending_loss']
 
 contains
 
@@ -239,30 +245,139 @@ contains
       text = 'validity '//trim(levels(outcome%validity))//': '//text(3:)
    end function measures_remark
 
-   !> Points of a sweep that are not good: how many, by which measure, and where
-   function points_report(grid, summary) result(text)
+   !> Number of points of a sweep that are not good, and for each measure, not only the one that
+   !> decides, how many points it concerns and where
+   function points_report(grid, summary, surroundings) result(text)
       type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
+      !> Surroundings of the impacts
+      type(surroundings_t), intent(in) :: surroundings
       !> Lines; empty if all are good
       character(len=:), allocatable :: text
 
-      logical, allocatable :: chosen(:)
-      integer :: cause, level
+      type(surroundings_t) :: around
+      real(wp), dimension(size(grid%axes), size(thresholds), level_outside) :: least, most
+      real(wp) :: at(size(grid%axes)), values(size(thresholds))
+      integer :: found(size(thresholds), level_outside)
+      integer :: cause, decides, i, k, level, validity, columns(size(measures))
+      integer :: places(size(grid%axes))
 
       text = points_remark(grid, summary)
       if (text == '') return
       text = '  '//text//nl
-      allocate (chosen(size(summary%status)))
+      columns = places_of_measures()
+      validity = quantity_place('validity')
+      decides = quantity_place('validity_cause')
+      around = surroundings
+      do k = 1, size(grid%axes)
+         ! what varies is known only where it decides
+         if (grid%axes(k)%name == 'plate.extent') around%extent = none
+         if (index(grid%axes(k)%name, '.yield_strength') > 0) around%yield_strength = none
+      end do
+      found = 0
+      least = huge(least)
+      most = -huge(most)
+      do i = 1, size(summary%status)
+         if (summary%values(validity)%integers(i) <= level_good) cycle
+         values = judged(outcome_at(summary, columns, i), around)
+         places = grid%places(i)
+         at = [(grid%axes(k)%values(places(k)), k=1, size(places))]
+         do cause = 1, size(thresholds)
+            level = level_of(cause, values(cause))
+            if (summary%values(decides)%integers(i) == cause) &
+               level = summary%values(validity)%integers(i)
+            if (level <= level_good) cycle
+            found(cause, level) = found(cause, level) + 1
+            least(:, cause, level) = min(least(:, cause, level), at)
+            most(:, cause, level) = max(most(:, cause, level), at)
+         end do
+      end do
       do level = level_outside, level_caution, -1
          do cause = 1, size(thresholds)
-            chosen = summary%values(quantity_place('validity'))%integers == level .and. &
-               summary%values(quantity_place('validity_cause'))%integers == cause
-            if (any(chosen)) text = text//'    '//trim(levels(level))//': ' &
-               //integer_text(count(chosen))//' by '//trim(thresholds(cause)%measure)//', ' &
-               //place_of(grid, chosen)//nl
+            if (found(cause, level) > 0) text = text//'    '//trim(levels(level))//': ' &
+               //integer_text(found(cause, level))//' by '//trim(thresholds(cause)%measure)//', ' &
+               //place_of(grid, least(:, cause, level), most(:, cause, level))//nl
          end do
       end do
    end function points_report
+
+   !> Places of the columns of `outcome_at`; finding them for each point would take longer than all
+   !> the rest
+   function places_of_measures() result(places)
+      integer :: places(size(measures))
+
+      integer :: i
+
+      places = [(quantity_place(trim(measures(i))), i=1, size(measures))]
+   end function places_of_measures
+
+   !> The columns of a point that its validity depends on
+   pure function outcome_at(summary, places, point) result(outcome)
+      type(summary_t), intent(in) :: summary
+      !> From `places_of_measures`
+      integer, intent(in) :: places(:)
+      integer, intent(in) :: point
+      type(outcome_t) :: outcome
+
+      outcome%status = summary%status(point)
+      outcome%cor = summary%values(places(1))%reals(point)
+      outcome%cor_sphere = summary%values(places(2))%reals(point)
+      outcome%cor_error = summary%values(places(3))%reals(point)
+      outcome%cor_sphere_error = summary%values(places(4))%reals(point)
+      outcome%initial_energy = summary%values(places(5))%reals(point)
+      outcome%wave_energy = summary%values(places(6))%reals(point)
+      outcome%energy_loss = summary%values(places(7))%reals(point)
+      outcome%energy_imbalance = summary%values(places(8))%reals(point)
+      outcome%contact_ratio = summary%values(places(9))%reals(point)
+      outcome%thickness_ratio = summary%values(places(10))%reals(point)
+      outcome%plate_wave_number = summary%values(places(11))%reals(point)
+      outcome%needed_extent = summary%values(places(12))%reals(point)
+      outcome%deflection_ratio = summary%values(places(13))%reals(point)
+      outcome%weight_ratio = summary%values(places(14))%reals(point)
+      outcome%mean_pressure = summary%values(places(15))%reals(point)
+      outcome%half_space_loss = summary%values(places(16))%reals(point)
+      outcome%bending_loss = summary%values(places(17))%reals(point)
+   end function outcome_at
+
+   !> Restitution of the sphere with exact mechanics at the first and the last point with a result,
+   !> and at those of the smallest and the largest value
+   function exact_points(case, grid, summary) result(text)
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
+      type(summary_t), intent(in) :: summary
+      !> Lines; empty if it is the same, or nothing has a result
+      character(len=:), allocatable :: text
+
+      character(len=*), parameter :: labels(4) = [character(len=8) :: 'first', 'last', 'smallest', &
+         'largest']
+      type(model_t) :: exact
+      logical, allocatable :: known(:)
+      logical :: differs, is_shown
+      integer :: points(4), i
+      character(len=:), allocatable :: value
+
+      text = ''
+      differs = .false.
+      allocate (known(size(summary%status)))
+      known = summary%status == contact_separated
+      if (.not. any(known)) return
+      associate (cor => summary%values(quantity_place('cor_sphere'))%reals)
+         points = [findloc(known, .true., dim=1), findloc(known, .true., dim=1, back=.true.), &
+            minloc(cor, dim=1, mask=known), maxloc(cor, dim=1, mask=known)]
+         do i = 1, size(points)
+            if (any(points(:i - 1) == points(i))) cycle
+            call solve_exact(grid%case_at(case, points(i)), outcome_at(summary, &
+               places_of_measures(), points(i)), exact, is_shown)
+            differs = differs .or. is_shown
+            value = 'no result'
+            if (.not. allocated(exact%failure)) value = significant(exact%outcome%cor_sphere, 5, 0)
+            text = text//'    '//trim(labels(i))//', '//coordinates(grid, points(i))//': ' &
+               //significant(cor(points(i)), 5, 0)//', exact '//value//nl
+         end do
+      end associate
+      if (differs) text = '  cor_sphere with exact mechanics'//nl//text
+      if (.not. differs) text = ''
+   end function exact_points
 
    !> Number of points of a sweep that are not good, and the measures, in one line
    function points_remark(grid, summary) result(text)
@@ -313,30 +428,19 @@ contains
    end function joined
 
    !> Ranges of the parameters of some points
-   function place_of(grid, chosen) result(text)
+   function place_of(grid, least, most) result(text)
       type(grid_t), intent(in) :: grid
-      !> Which points, shape (points)
-      logical, intent(in) :: chosen(:)
+      !> Smallest and largest values of the parameters, shape (axes)
+      real(wp), intent(in) :: least(:), most(:)
       !> Names and ranges
       character(len=:), allocatable :: text
 
-      real(wp) :: least(size(grid%axes)), most(size(grid%axes))
-      integer :: i, k, places(size(grid%axes))
+      integer :: k
 
-      least = huge(least)
-      most = -huge(most)
-      do i = 1, size(chosen)
-         if (.not. chosen(i)) cycle
-         places = grid%places(i)
-         do k = 1, size(places)
-            least(k) = min(least(k), grid%axes(k)%values(places(k)))
-            most(k) = max(most(k), grid%axes(k)%values(places(k)))
-         end do
-      end do
       text = ''
-      do k = 1, size(places)
-         text = text//', '//grid%axes(k)%name//' '//brief(least(k))
-         if (most(k) > least(k)) text = text//' .. '//brief(most(k))
+      do k = 1, size(least)
+         text = text//', '//grid%axes(k)%name//' '//significant(least(k), 5, 0)
+         if (most(k) > least(k)) text = text//' .. '//significant(most(k), 5, 0)
       end do
       text = text(3:)
    end function place_of

@@ -163,8 +163,8 @@ contains
    !> time: an elastic one leaves 0.68/lambda^5 of the velocity if lambda > 3, at most 3e-3
    pure function light_plate(impact) result(text)
       type(impact_t), intent(in) :: impact
-      !> In words, with lambda by the storage moduli at pi/(elastic contact time); blank if the plate
-      !> is not light. Of fixed length, see `as_text`
+      !> In words, with lambda by the storage moduli at pi/(elastic contact time); blank if the
+      !> plate is not light. Of fixed length, see `as_text`
       character(len=280) :: text
 
       real(wp), parameter :: light = 3.0_wp, share = 0.68_wp

@@ -154,7 +154,7 @@ contains
          outcome%energy_loss)
       call list%add('initial_energy', 'KE_0', 'J', 'kinetic energy before the impact', &
          outcome%initial_energy)
-      call list%add('energy_imbalance', 'dW', 'J', 'energy imbalance: lost, but not accounted for', &
+      call list%add('energy_imbalance', 'dW', 'J', 'energy imbalance: lost, not accounted for', &
          outcome%energy_imbalance)
       call list%add('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0', &
          outcome%min_frequency)
@@ -180,15 +180,15 @@ contains
       call list%add('thickness_ratio', 'a/2h', '1', &
          "contact_radius / thickness, times the plate's share", &
          outcome%thickness_ratio)
-      call list%add('layer_ratio', 'a/H', '1', 'ratio of contact_radius to thickness, on a base', &
+      call list%add('layer_ratio', 'a/H', '1', 'contact_radius / thickness, on a base', &
          outcome%layer_ratio)
       call list%add('layer_stiffening', 'F/F_H', '1', &
-         'ratio of the force to that on a half space, on a base', outcome%layer_stiffening)
+         'force / force on a half space, on a base', outcome%layer_stiffening)
       call list%add('plate_wave_number', 'kH', '1', 'thickness times wave number at pi/t0', &
          outcome%plate_wave_number)
       call list%add('needed_extent', 'pi/k', 'm', 'nearest edge that does not send waves back', &
          outcome%needed_extent)
-      call list%add('deflection_ratio', 'U/2h', '1', 'ratio of largest plate displacement to thickness', &
+      call list%add('deflection_ratio', 'U/2h', '1', 'largest plate displacement / thickness', &
          outcome%deflection_ratio)
       call list%add('weight_ratio', 'mg/F', '1', 'ratio of the weight of the sphere to max_force', &
          outcome%weight_ratio)

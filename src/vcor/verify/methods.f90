@@ -28,8 +28,8 @@ module vcor_verify_methods
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: judge_ends, judge_numbers, is_honest, error_of_best
 
-   !> Largest true error divided by the stated one: over the cases of tests/reference with these steps the
-   !> ratio is below 3 wherever the error is above `rounding`
+   !> Largest ratio of the true error to the stated one: over the cases of tests/reference with these
+   !> steps the ratio is below 3 wherever the error is above `rounding`
    real(wp), parameter :: honest_factor = 3.0_wp
    !> Accuracy of the energy budget and of quantities other than cor divided by that of cor: the steps are
    !> chosen for cor, and the errors of the others are of the same order
