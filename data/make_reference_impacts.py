@@ -152,7 +152,8 @@ def waves():
         )
         case = vcor.Case(text)
         case["solver.accuracy"] = 5e-7
-        errors = {"cor_sphere": "cor_sphere_error", "contact_time": "contact_time_error", "max_force": "max_force_error"}
+        # no second method has the digits of a contact time with waves
+        errors = {"cor_sphere": "cor_sphere_error", "max_force": "max_force_error"}
         found = case.solve({}, [*errors, *errors.values()])
         yield {
             "name": name, "mechanics": "exact", "inputs": inputs(text), "case": text,

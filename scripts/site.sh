@@ -30,7 +30,7 @@ mkdir -p "$site"
 cp -r docs "$site/docs"
 cp docs/site/conf.py docs/site/python_api.md "$site/docs"
 cp examples/tutorial.ipynb "$site/docs"
-cp CHANGELOG.md "$site/docs/changes.md"
+sed "s|](docs/|](|g" CHANGELOG.md >"$site/docs/changes.md"
 printf 'ROOT = %s\n' "$top" >"$site/docs/place"
 for name in examples data include tests benchmarks scripts man src CONTRIBUTING.md README.md CHANGELOG.md CITATION.cff LICENSE; do
    ln -s "$top/$name" "$site/$name"
