@@ -12,7 +12,7 @@ from conftest import ROOT
 import vcor
 from vcor.materials import identification
 from vcor.materials.data import read_data
-from vcor.materials.observations import read_columns
+from vcor.materials.observations import observations, read_columns
 
 DATA = ROOT / "python" / "tests" / "data"
 CASE = """&impact velocity = 1.0 /
@@ -372,6 +372,21 @@ def test_records_on_a_baseline(sls, offset, sign, mass):
     assert ("turned over" in str(found)) is (sign < 0)
     assert "no noise" not in str(found) and not found.alike
     assert f"a baseline of {sign * offset * (mass or 1):.2g}"[:-1] in str(found)
+
+
+@pytest.mark.parametrize(
+    ("cor", "errors", "accuracy"),
+    [
+        ([1.0, 1.0, 1.0], {}, 1e-6),
+        ([0.58, 0.57, 0.59], {}, 1e-5 * 0.01 / 0.59 / math.sqrt(12)),
+        ([0.58123456789, 0.57123456789, 0.59123456789], {}, 1e-9),
+        ([0.58123456789, 0.57123456789, 0.59123456789], {"cor": 0.01}, 1e-7),
+    ],
+)
+def test_impacts_are_as_accurate_as_the_data_deserve(sls, cor, errors, accuracy):
+    data = {"velocity": [1.0, 3.0, 9.0], "cor": cor}
+    block = observations(sls, data, ["rubber.beta"])
+    assert identification._deserved([block], errors) == pytest.approx(accuracy, rel=1e-6)
 
 
 def test_misfits_that_are_no_noise(sls):

@@ -31,11 +31,22 @@ from .fit import fit
 from .identification_report import figure, report
 from .limits import BESIDE, OPEN, Better, Fit, Interval
 from .misfit import are_alike
-from .observations import File, Impacts, Record, Source, materials_of, observations, sharpen, window
+from .observations import (
+    Block,
+    File,
+    Impacts,
+    Record,
+    Source,
+    materials_of,
+    observations,
+    sharpen,
+    window,
+)
 from .search import STEP, Problem
 
-#: Accuracy of the impacts; derivatives are differences of them
-ACCURACY = 1e-9
+#: Errors of the impacts to those of the data, small since derivatives are differences of impacts,
+#: and the accuracies between which they are solved
+SHARP, FINEST, COARSEST = 1e-5, 1e-9, 1e-6
 #: Better fits that profiles may find one after the other
 BETTER = 5
 #: Probability of a larger misfit below which the model does not follow the data
@@ -224,11 +235,23 @@ def identify(
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
     if case["solver.method"] != "direct":
-        sharpen(case, ACCURACY)
+        sharpen(case, _deserved(blocks, scalars(errors)))
     with progress_bar(None, None) as bar:
         problem = Problem(case, free, blocks, scalars(errors), bar)
         best, limits = _determined(problem, *problem.best(seed))
         return _judged(problem, best, limits, model or "")
+
+
+def _deserved(blocks: Sequence[Block], errors: Mapping[str, float]) -> float:
+    """Accuracy of the impacts that data deserve, by their stated errors and their digits."""
+    least = math.inf
+    for block in blocks:
+        stated = np.array([errors.get(name, 0.0) for name in block.quantity]) * block.scale
+        stated = np.where(np.isnan(block.sigma), stated, block.sigma)
+        digits = np.nan_to_num(block.digit) / math.sqrt(12)
+        known = np.hypot(stated, digits)[block.scale > 0] / block.scale[block.scale > 0]
+        least = min(least, float(known.min(initial=math.inf)))
+    return min(max(SHARP * least, FINEST), COARSEST)
 
 
 def _determined(problem: Problem, x: Floats, chi2: float) -> tuple[Fit, list[list[Interval]]]:
