@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -12,6 +13,7 @@ from conftest import ROOT
 import vcor
 from vcor.materials import identification
 from vcor.materials.data import read_data
+from vcor.materials.limits import Fit
 from vcor.materials.observations import observations, read_columns
 
 DATA = ROOT / "python" / "tests" / "data"
@@ -615,3 +617,22 @@ def test_where_the_model_does_not_hold_is_said(sls):
     assert found["rubber.alpha"] == pytest.approx(300.0, rel=1e-5)
     assert found.validity == "outside at 2 of 2 impacts, by bending_loss, half_space_loss"
     assert "coefficients only" in str(found) and f"validity: {found.validity}" in str(found)
+
+
+class Valley:
+    """A sum of squares a^2, least at b = 2 a, to which no search comes from a b far above."""
+
+    guess = np.zeros(2)
+    low, high = np.full(2, -20.0), np.full(2, 20.0)
+    noise, dof = SimpleNamespace(estimated=False), 10
+
+    def minimize(self, x, *_, **__):
+        a, b = x
+        return (x, 9.0) if b - 2 * a > 1.5 else (np.array([a, 2 * a]), a**2)
+
+
+def test_another_minimum_on_the_line_is_no_end():
+    """The derivatives say b = 5 a, and there the search ends in another minimum."""
+    fit = Fit(Valley(), np.zeros(2), 0.0, np.array([[1.0, 0.0], [-5.0, 1.0]]), 0.0)
+    for one, width in zip(fit.intervals(0), (1.0, 1.96), strict=True):
+        assert one.high == pytest.approx(width, rel=0.01) == -one.low

@@ -173,7 +173,7 @@ class _Profile:
                     step = (width - z) / max(rate, 1e-300)
                     step = min(step, 2 * inside + LONGEST, longest, self.reach - inside)
                 trial = inside + step
-                found_at, rise = self.least(point, trial, step)
+                found_at, rise = self.least(point, trial, step, width)
                 here = self.end(found_at, rise, inside)
                 if rise < width:
                     if rise > z:
@@ -209,17 +209,23 @@ class _Profile:
         of_range = abs(at - last) < BESIDE and abs(last - problem.guess[i]) < FARTHEST - BESIDE
         return _End(at if of_range else self.side * math.inf, False)
 
-    def least(self, point: Floats, trial: float, ahead: float) -> tuple[Floats, float]:
+    def least(
+        self, point: Floats, trial: float, ahead: float, width: float
+    ) -> tuple[Floats, float]:
         """Where the least sum of squares is at a distance, and the root of its rise."""
         fit, i = self.fit, self.i
         straight = ahead * self.side * self.slope_of_others
-        # where the line leads to points without a result, the others start where they are
+        found_at, found = point, math.inf
+        # the line may lead to points without a result, or to another minimum, above the width: then
+        # the others start where they are
         for start in (point + straight, point.copy()):
             start[i] = fit.x[i] + self.side * trial
-            found_at, found = fit.problem.minimize(
+            at, squares = fit.problem.minimize(
                 start, self.others, 30, 1e-5, ranges=(self.low, self.high)
             )
-            if math.isfinite(found):
+            if squares < found:
+                found_at, found = at, squares
+            if found < fit.chi2 + width**2:
                 break
         if found < fit.chi2 - 1:
             raise Better(found_at)
