@@ -107,8 +107,8 @@ contains
       character(len=:), allocatable :: text
 
       text = heading(filename, title)//attempts_text(comparison)
-      if (.not. comparison%two_methods) text = text//'  note: method ive has no result that is ' &
-         //'accurate enough, so only direct is shown'//nl
+      if (.not. comparison%two_methods) text = text//'  note: method ive has no result for ' &
+         //'this case that is accurate enough, so only direct is shown'//nl
       if (comparison%separated) then
          text = text//nl//values_text(comparison)
          if (comparison%has_direct) text = text//nl//differences_text(comparison)

@@ -18,10 +18,12 @@ module vcor_solver
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy
 
-   !> The method `auto`: the coupled contact for waves in a plate of any thickness, otherwise
-   !> internal variables, and product integration if they fail. They fail if no sum of exponentials
-   !> represents the kernel: for a table whose data begin long after the end of the contact, for
-   !> some pairs, and for exponents near a limit; and if a receding contact grows again
+   !> The method `auto`: the coupled contact for waves in a plate of any thickness; product
+   !> integration for the paper's variants, a frozen plate, the second Volterra term and going on
+   !> after the separation; otherwise internal variables, and product integration if they fail. They
+   !> fail if no sum of exponentials represents the kernel: for a table whose data begin long after
+   !> the end of the contact, for some pairs, and for exponents near a limit; and if a receding
+   !> contact grows again
    type, extends(solver_t) :: auto_t
       !> Method for waves in a plate of any thickness
       type(coupled_t), allocatable :: coupled
@@ -69,6 +71,14 @@ contains
          call check_coupled(settings, impact, error)
       else if (settings%method == 'ive' .and. .not. is_product) then
          call refuse("adams_bashforth is a scheme of method = 'direct'", 'scheme method')
+      else if (settings%method == 'ive' .and. two_terms) then
+         call refuse("the second term of the Volterra series is solved by method = 'direct' only", &
+            'volterra_order volterra_coefficient method')
+      else if (settings%method == 'ive' .and. settings%ghost) then
+         call refuse("only method = 'direct' goes on after the separation", &
+            'continue_after_separation method')
+      else if (settings%method == 'ive' .and. impact%plate%frozen()) then
+         call refuse("waves = 'frozen' are solved by method = 'direct' only", 'waves method')
       else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
          call refuse('the second term of the Volterra series has no meaning with a viscosity, ' &
             //'whose kernel is a delta function', 'volterra_order volterra_coefficient viscosity')
@@ -207,7 +217,7 @@ contains
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
       type(adams_bashforth_t), allocatable :: adams_bashforth
-      type(solver_settings_t) :: fallback
+      type(solver_settings_t) :: fallback, first
 
       call check_numbers(settings, error)
       if (allocated(error)) return
@@ -221,7 +231,11 @@ contains
          call move_alloc(coupled, solver)
       else if (settings%method == 'auto' .and. settings%scheme == 'product') then
          allocate (auto)
-         call new_ive(auto%ive, settings, error)
+         ! the paper's variants go to the other method
+         first = settings
+         first%second_coefficient = 0.0_wp
+         first%ghost = .false.
+         call new_ive(auto%ive, first, error)
          if (allocated(error)) return
          auto%settings = settings
          ! the time step belongs to a method that the user has not requested
@@ -259,6 +273,11 @@ contains
 
       if (impact%face%has_waves) then
          call self%coupled%solve(impact, trajectory, error)
+         return
+      end if
+      if (impact%plate%frozen() .or. self%settings%ghost &
+          .or. abs(self%settings%second_coefficient) > 0.0_wp) then
+         call self%product%solve(impact, trajectory, error)
          return
       end if
       call self%ive%solve(impact, trajectory, error)

@@ -75,14 +75,12 @@ def test_full_precision(vcor, model):
             else:
                 numbers = [float(values[name]), stored, float(row[name])]
                 # a sphere that is not dropped has no height of rebound, a free plate no base, one that bends loses nothing
-                # else by that, and ive states no errors of time and force
+                # else by that
                 if name in (
                     "rebound_height",
                     "layer_ratio",
                     "layer_stiffening",
                     "bending_loss",
-                    "contact_time_error",
-                    "max_force_error",
                 ) or (name == "inelasticity" and model == "power_law"):
                     assert all(map(math.isnan, numbers))
                 else:
@@ -135,13 +133,13 @@ def test_exponents_of_three_digits(vcor):
     assert not re.search(r"[0-9][+-][0-9]{3}\b", screen)
 
 
-FLEEING = """&impact velocity = 15.0 /
-&sphere radius = 0.01, material = 'steel' /
-&plate half_thickness = 0.0033, material = 'rubber', waves = 'frozen' /
-&contact law = 'receding' /
-&material name = 'steel', model = 'rigid', density = 7800 /
-&material name = 'rubber', density = 1100, poisson_ratio = 0.45, model = 'sls',
-   glassy_modulus = 1.5e7, alpha = 0.2167694, beta = 3217.4 /
+FLEEING = """&impact velocity = 0.012 /
+&sphere shape = 'punch', punch_radius = 7e-10, mass = 1e-10, material = 'soft' /
+&plate material = 'stiff', waves = 'frozen', half_thickness = 1e-8 /
+&material name = 'soft', model = 'mittag_leffler', density = 10, poisson_ratio = 0.5, relaxing_modulus = 1.7e7,
+   exponent = 0.8, time = 4e5 /
+&material name = 'stiff', model = 'power_law', density = 4.7e5, poisson_ratio = 0.49,
+   equilibrium_modulus = 1.4e10, coefficient = 4e8, exponent = 0.94 /
 """
 
 
@@ -154,4 +152,4 @@ def test_a_plate_that_gives_energy_back_is_seen(vcor):
     value, share = re.search(r"W_wave +(\S+) J +(\S+) %; only W_h \+ W_wave is a loss$", line).groups()
     assert float(value) < 0
     # two digits of it are shown
-    assert float(share) == pytest.approx(100 * float(value) / 3.6756634, rel=0.02)
+    assert float(share) == pytest.approx(100 * float(value) / 7.2e-15, rel=0.02)

@@ -106,7 +106,7 @@ def test_energy_from_nothing(vcor):
     assert row["energy_loss"] == row["hysteresis_energy"] + row["wave_energy"]
     frozen = """&impact velocity = 0.012 /
 &sphere shape = 'punch', punch_radius = 7e-10, mass = 1e-10, material = 'soft' /
-&plate material = 'stiff', waves = 'frozen', half_thickness = 7.5e-9 /
+&plate material = 'stiff', waves = 'frozen', half_thickness = 1e-8 /
 &material name = 'soft', model = 'mittag_leffler', density = 10, poisson_ratio = 0.5, relaxing_modulus = 1.7e7,
    exponent = 0.8, time = 4e5 /
 &material name = 'stiff', model = 'power_law', density = 4.7e5, poisson_ratio = 0.49,

@@ -10,7 +10,7 @@ program test_adams_bashforth
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_sls, prony_t
-   use vcor_solver_ive, only : ive_t, new_ive
+   use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
    use vcor_solver_paper_formulas, only : damping_limit, kernel_terms
    use vcor_solver_type, only : solver_settings_t
@@ -223,7 +223,7 @@ contains
       real(wp), parameter :: step(2) = [8.0e-6_wp, 1.0e-6_wp]
       type(impact_t) :: impact
       type(adams_bashforth_t) :: solver
-      type(ive_t) :: ive
+      type(product_t) :: product
       type(outcome_t) :: outcome, reference, without
       type(trajectory_t) :: trajectory
       type(error_t), allocatable :: error
@@ -231,9 +231,9 @@ contains
       integer :: i, j, n
 
       call rigid_on_plate(sls, waves_relaxing, 10.0_wp, impact)
-      call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp, second_coefficient=coefficient), &
-         error)
-      call run(ive, impact, reference)
+      call new_product(product, solver_settings_t(time_step=5.0e-7_wp, &
+         second_coefficient=coefficient))
+      call run(product, impact, reference)
       call march(impact, 1.0e-6_wp, "a", "trapezoid", without)
       call check(abs(without%cor - reference%cor) > 1.0e-3_wp, "the second term matters")
       do i = 1, 2
@@ -252,7 +252,7 @@ contains
                quadrature=quadrature(j), second_coefficient=coefficient), error)
             call run(solver, impact, outcome)
             call check_close(outcome%cor, reference%cor, merge(2.0e-3_wp, 1.0e-5_wp, j == 1), &
-               "form "//form(i)//", "//quadrature(j)//": COR as by internal variables")
+               "form "//form(i)//", "//quadrature(j)//": COR as by product integration")
          end do
       end do
    end subroutine test_second_term

@@ -5,7 +5,7 @@ program test_exponential_sum
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
-   use vcor_impact_trajectory, only : col_time, contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -279,15 +279,6 @@ contains
       outcome = evaluate(impact, trajectory)
       call check(outcome%status == contact_separated, "the bodies separate")
       call check_close(outcome%cor, reference, 1.0e-8_wp, "exponent 0.9")
-
-      ! ghost lines to twice the contact time are beyond the first window, too
-      call new_ive(ive, solver_settings_t(ghost=.true.), error)
-      call ive%solve(impact, trajectory, error)
-      call check(.not. allocated(error), "ghost lines beyond the first window")
-      call check_close(cor_of(impact, trajectory), reference, 1.0e-8_wp, "do not change the end")
-      call check_relative(trajectory%state(col_time, trajectory%final), &
-         2.0_wp*trajectory%state(col_time, trajectory%last), 1.0e-8_wp, &
-         "and go to twice the contact time")
    end subroutine test_long_contact
 
 end program test_exponential_sum

@@ -7,9 +7,8 @@ program test_numeric
    use vcor_solver_convolution, only : dot
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, &
       & legendre, radau_nodes
-   use vcor_numeric_radau_algebra, only : apply, invert, ratio, times, width
-   use vcor_numeric_radau_collocation, only : collocation_t, linear, most_steps, &
-      new_collocation, panel_map_t
+   use vcor_numeric_radau_dense, only : apply, invert, width
+   use vcor_numeric_radau_rule, only : closing, doubling, linear, map_t, new_rule, opening, rule_t
    use vcor_numeric_radau_settling, only : new_settling, settling_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : random_t, success
@@ -107,7 +106,7 @@ contains
 
    !> Radau's nodes with the weights of interpolation are exact to degree 2 n - 2
    subroutine test_radau()
-      type(collocation_t) :: rule
+      type(rule_t) :: rule
       type(error_t), allocatable :: error
       real(wp), allocatable :: node(:)
       integer :: n, k
@@ -119,9 +118,9 @@ contains
       do n = 2, most_stages
          allocate (node(n))
          call radau_nodes(node)
-         call new_collocation(rule, n, error)
+         call new_rule(rule, n, error)
          call success(error, "a collocation rule is built")
-         call check_close(rule%node(1:n), node, rounding, "collocation sits on Radau's nodes")
+         call check_close(rule%point(1:n), node, rounding, "collocation sits on Radau's nodes")
          do k = 0, 2*n - 2
             call check_close(sum(rule%weight(1:n)*node**k), 1.0_wp/real(k + 1, wp), rounding, &
                "Radau's rule integrates polynomials up to degree 2 n - 2")
@@ -278,22 +277,21 @@ contains
 
    !> Polynomials are interpolated, differentiated and integrated exactly, through the eigenvectors
    subroutine test_collocation()
-      type(collocation_t) :: rule
+      type(rule_t) :: rule
       type(error_t), allocatable :: error
-      real(wp) :: value(0:width), slope(0:width), theta(width)
-      integer :: n, j, step
+      real(wp) :: value(0:width), slope(0:width)
+      integer :: n, j
 
       do n = 2, most_stages
-         call new_collocation(rule, n, error)
+         call new_rule(rule, n, error)
          call success(error, "a collocation rule is built")
          value = rule%point**n
-         call check_close(rule%interpolate(value(0:n), 0.37_wp), 0.37_wp**n, &
+         call check_close(rule%interpolate(value, 0.37_wp), 0.37_wp**n, &
             collocation_tolerance, "a polynomial of degree n is interpolated")
-         theta = [(0.25_wp*real(j, wp), j = 1, width)]
-         call check_close(rule%extend(value, theta), theta**n, &
-            collocation_tolerance*2.0_wp**n, "a polynomial is extended beyond its panel")
+         call check_close(rule%interpolate(value, 2.0_wp), 2.0_wp**n, &
+            collocation_tolerance*4.0_wp**n, "a polynomial is extended beyond its panel")
          do j = 0, n
-            call check_close(rule%interpolate(value(0:n), rule%point(j)), value(j), rounding, &
+            call check_close(rule%interpolate(value, rule%point(j)), value(j), rounding, &
                "interpolation takes the values at the points")
          end do
          slope = rule%slopes(value)
@@ -301,12 +299,14 @@ contains
             real(n, wp)*rule%point(0:n)**(n - 1), collocation_tolerance, &
             "a polynomial of degree n is differentiated")
          value = (rule%point - 0.43_wp)*(1.0_wp + rule%point)
-         call check_close(rule%crossing(value, 0.0_wp, 1.0_wp, 1.0e-10_wp), 0.43_wp, &
+         j = count(rule%point(1:n) < 0.43_wp)
+         call check_close(rule%crossing(value, j, 1.0e-10_wp), 0.43_wp, &
             collocation_tolerance, "the zero of a polynomial is found")
          call check_map(rule, rule%map(linear), 1.0_wp, 0.0_wp)
-         do step = 0, most_steps
-            call check_map(rule, rule%map(step), 2.0_wp*real(step, wp), 1.0_wp)
-         end do
+         call check_map(rule, rule%map(opening), 0.0_wp, 1.0_wp)
+         call check_map(rule, rule%map(doubling), 2.0_wp/3.0_wp, 1.0_wp/3.0_wp)
+         call check_close([rule%map(closing)%slope, rule%map(closing)%bend], [2.0_wp, -1.0_wp], &
+            0.0_wp, "a closing panel is in the root of the time left")
       end do
    end subroutine test_collocation
 
@@ -316,7 +316,7 @@ contains
       integer, parameter :: pieces = 60, order = 20
       real(wp), parameter :: product(9) = [1.0e-3_wp, 0.3_wp, 2.0_wp, 12.0_wp, 35.9_wp, 36.1_wp, &
          1.0e2_wp, 1.0e4_wp, 1.0e8_wp]
-      real(wp), parameter :: scale = 2.0_wp, start = 0.7_wp, slope = 0.3_wp
+      real(wp), parameter :: scale = 2.0_wp, start = 0.7_wp
       type(settling_t) :: rule
       real(wp) :: point(0:8), node(8), x(0:8), gauss(order), weight(order), y, upper
       real(wp) :: expected, rate
@@ -328,9 +328,9 @@ contains
          point = 0.0_wp
          point(1:n) = node(:n)
          call new_settling(rule, point(:n))
-         do k = 2, n
-            ! x = y^k, so -dx/dy = -k y^(k - 1), and a slope at the end, which is to be left out
-            x(:n) = (1.0_wp - point(:n))**k + slope*(1.0_wp - point(:n))
+         do k = 2, n + 1
+            ! x = y^k, so -dx/dy = -k y^(k - 1), which is 0 at the end
+            x(:n) = (1.0_wp - point(:n))**k
             do p = 1, size(product)
                rate = product(p)
                expected = start*decay(rate)
@@ -364,9 +364,9 @@ contains
    !> exact for f of degree n - 2 in theta, and functions of B follow from its eigenvalues
    subroutine check_map(rule, map, slope, bend)
       !> The rule
-      type(collocation_t), intent(in) :: rule
+      type(rule_t), intent(in) :: rule
       !> The map
-      type(panel_map_t), intent(in) :: map
+      type(map_t), intent(in) :: map
       !> What its slope is to be
       real(wp), intent(in) :: slope
       !> What its bend is to be
@@ -374,19 +374,19 @@ contains
 
       real(wp) :: b(width, width), inverse(width, width)
       real(wp) :: node(rule%stages), one(width), length, tolerance
-      integer :: n, k, j
+      integer :: n, k
 
       n = rule%stages
       tolerance = eigenvector_tolerance(n)
-      node = rule%node(1:n)
-      call check_close(map%slope, slope, 0.0_wp, "slope of the map")
-      call check_close(map%bend, bend, 0.0_wp, "bend of the map")
-      call check(all(abs(abs(map%square) - 1.0_wp) <= 0.0_wp), "j^2 is 1 or -1")
-      one = apply(map%right, map%left_one)
-      do j = 1, width
-         b(:, j) = apply(map%right, times(map%square, map%eigenvalue, map%left(:, j)))
-         inverse(:, j) = apply(map%right, ratio(map%square, map%left(:, j), map%eigenvalue))
-      end do
+      node = rule%point(1:n)
+      call check_close(map%slope, slope, rounding, "slope of the map")
+      call check_close(map%bend, bend, rounding, "bend of the map")
+      one = map%compose(map%left_one)
+      b = map%function_of(map%eigenvalue)
+      inverse = map%function_of(1.0_wp/map%eigenvalue)
+      call check_close(map%compose(map%decompose(map%matrix(:, 1)))/map%matrix(n, 1), &
+         map%matrix(:, 1)/map%matrix(n, 1), tolerance, "a vector is taken apart and put together")
+      call check_close(map%square, matmul(map%matrix, map%matrix), rounding, "the square of B")
       length = slope + bend
       call check_close(one(1:n), 1.0_wp, tolerance, "V V^-1 takes a constant to itself")
       call check_close(b/length, map%matrix/length, tolerance, "V lambda V^-1 is B")

@@ -478,12 +478,14 @@ contains
       type(error_t), allocatable :: error
 
       ! what the settings are by themselves
-      call check_text(method_for("auto", "product", .false.), "ive", "auto is ive")
-      call check_text(method_for("direct", "product", .false.), "direct", &
+      call check_text(trim(method_for("auto", "product", .false., .false.)), "ive", "auto is ive")
+      call check_text(trim(method_for("direct", "product", .false., .false.)), "direct", &
          & "what is asked for is taken")
-      call check_text(method_for("auto", "adams_bashforth", .false.), "direct", &
+      call check_text(trim(method_for("auto", "adams_bashforth", .false., .false.)), "direct", &
          & "auto is direct for the scheme of the paper")
-      call check_text(method_for("auto", "product", .true.), "coupled", &
+      call check_text(trim(method_for("auto", "product", .false., .true.)), "direct", &
+         & "auto is direct for the variants of the paper")
+      call check_text(trim(method_for("auto", "product", .true., .false.)), "coupled", &
          & "auto is coupled for waves in a plate of any thickness")
       call new_solver(solver, settings, singular, error)
       call success(error, "auto solves a power law")

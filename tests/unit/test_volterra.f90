@@ -6,7 +6,7 @@ program test_volterra
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_frozen, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
-   use vcor_impact_trajectory, only : col_force, col_indentation, col_time, trajectory_t
+   use vcor_impact_trajectory, only : col_force, col_time, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_prony, only : new_prony, new_rigid, new_sls, prony_t
    use vcor_solver_ive, only : ive_t, new_ive
@@ -97,14 +97,13 @@ contains
       call material%set_constants(error, density=1100.0_wp)
    end subroutine paper_material
 
-   !> Both methods with and without the second term, on both plates
+   !> Two steps with and without the second term, on both plates
    subroutine test_methods()
       real(wp), parameter :: coefficient(3) = [0.0_wp, 1.0_wp, 200.0_wp]
       ! what the issue of this program asks for; measured: 2e-9 and 1e-8
       real(wp), parameter :: agreement = 1.0e-6_wp
       type(prony_t) :: material
       type(impact_t) :: impact
-      type(ive_t) :: ive
       type(product_t) :: product
       type(trajectory_t) :: trajectory
       type(outcome_t) :: one, other, plain
@@ -116,10 +115,10 @@ contains
          do waves = waves_relaxing, waves_frozen
             call paper_impact(material, waves, impact)
             do j = 1, size(coefficient)
-               call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp, &
-                  second_coefficient=coefficient(j)), error)
-               call ive%solve(impact, trajectory, error)
-               call check(.not. allocated(error), "ive comes to its end")
+               call new_product(product, solver_settings_t(time_step=5.0e-7_wp, &
+                  second_coefficient=coefficient(j)))
+               call product%solve(impact, trajectory, error)
+               call check(.not. allocated(error), "product comes to its end with half the step")
                one = evaluate(impact, trajectory)
                call new_product(product, solver_settings_t(time_step=1.0e-6_wp, &
                   accuracy=1.0e-6_wp, second_coefficient=coefficient(j)))
@@ -129,8 +128,8 @@ contains
                call check_close(other%cor, one%cor, agreement, "COR")
                call check_close(other%cor_sphere, one%cor_sphere, agreement, "COR of the sphere")
                call check_close(other%contact_time/one%contact_time, 1.0_wp, agreement, "time")
-               call check_close(one%energy_imbalance/one%initial_energy, 0.0_wp, 1.0e-9_wp, &
-                  "energy of ive")
+               call check_close(one%energy_imbalance/one%initial_energy, 0.0_wp, agreement, &
+                  "energy")
                if (j == 1) plain = one
                if (j == 3) call check(abs(one%cor - plain%cor) > 1.0e-3_wp, &
                   "a large second term matters")
@@ -141,48 +140,32 @@ contains
       end do
    end subroutine test_methods
 
-   !> Ghost lines of both methods
+   !> Ghost lines; internal variables refuse them, and the second term
    subroutine test_ghost()
-      real(wp), parameter :: end_time = 2.0e-3_wp
-      ! product integration with this step is that close
-      real(wp), parameter :: step = 2.0e-6_wp, agreement = 1.0e-5_wp
+      real(wp), parameter :: end_time = 2.0e-3_wp, step = 2.0e-6_wp
       type(prony_t) :: material
       type(impact_t) :: impact
       type(ive_t) :: ive
       type(product_t) :: product
-      type(trajectory_t) :: one, other, short
+      type(trajectory_t) :: long, short
       type(error_t), allocatable :: error
-      real(wp), allocatable :: state(:, :)
-      integer :: n
 
       call paper_material(1, material)
       call paper_impact(material, waves_relaxing, impact)
-      call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp, end_time=end_time, ghost=.true.), &
-         error)
-      call ive%solve(impact, one, error)
-      call new_product(product, solver_settings_t(time_step=step, accuracy=1.0e-6_wp, &
-         end_time=end_time, ghost=.true.))
-      call product%solve(impact, other, error)
-      call check(.not. allocated(error), "the runs come to their end")
-      call check(one%final > one%last .and. other%final > other%last, "there is a ghost")
-      call check_close(one%state(col_time, one%final)/end_time, 1.0_wp, 1.0e-12_wp, "end of ive")
-      call check_close(other%state(col_time, other%final)/end_time, 1.0_wp, 1.0e-9_wp, &
-         "end of product")
-      call check(minval(one%state(col_force, :one%final)) < -10.0_wp, "the ghost pulls")
-
-      call one%sample(1000, state)
-      n = nint(1.8e-3_wp/step)
-      associate (ghost => other%state(:, n + 1))
-         call check_close(ghost(col_time), 1.8e-3_wp, 1.0e-12_wp, "the end of contact is a node")
-         call check_close(ghost(col_indentation)/state(col_indentation, 900), 1.0_wp, agreement, &
-            "both ghosts are the same")
-      end associate
-      call check(state(col_time, 900) > 1.79e-3_wp, "sampled beyond the contact")
-
-      call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp), error)
-      call ive%solve(impact, short, error)
-      call check_close(evaluated(impact, one), evaluated(impact, short), 1.0e-14_wp, &
+      call new_product(product, solver_settings_t(time_step=step, end_time=end_time, ghost=.true.))
+      call product%solve(impact, long, error)
+      call check(.not. allocated(error), "the run comes to its end")
+      call check(long%final > long%last, "there is a ghost")
+      call check_close(long%state(col_time, long%final)/end_time, 1.0_wp, 1.0e-9_wp, "its end")
+      call check(minval(long%state(col_force, :long%final)) < -10.0_wp, "the ghost pulls")
+      call new_product(product, solver_settings_t(time_step=step))
+      call product%solve(impact, short, error)
+      call check_close(evaluated(impact, long), evaluated(impact, short), 1.0e-14_wp, &
          "the outcome is that of the contact")
+      call new_ive(ive, solver_settings_t(ghost=.true.), error)
+      call check(allocated(error), "ive refuses to go on after the separation")
+      call new_ive(ive, solver_settings_t(second_coefficient=1.0_wp), error)
+      call check(allocated(error), "ive refuses the second term")
    end subroutine test_ghost
 
    !> COR of a trajectory

@@ -209,7 +209,7 @@ module vcor_case_catalogue
          models=relaxing_models), &
       !
       key_t("solver", "method", text_key, &
-         "auto: coupled for waves = 'body', direct for scheme adams_bashforth, otherwise ive", &
+         "auto: coupled for waves = 'body', direct for the paper's variants, otherwise ive", &
          choices="auto ive direct coupled", default="auto"), &
       key_t("solver", "scheme", text_key, "Scheme of the direct method", &
          choices="product adams_bashforth", default="product"), &
@@ -224,12 +224,13 @@ module vcor_case_catalogue
          choices="a b", default="a"), &
       key_t("solver", "quadrature", text_key, "Quadrature of the sums; adams_bashforth only", &
          choices="rectangle trapezoid", default="trapezoid"), &
-      key_t("solver", "volterra_order", integer_key, "Terms of the Volterra series", &
-         range=order_range, default="1"), &
+      key_t("solver", "volterra_order", integer_key, &
+         "Terms of the Volterra series; 2: direct only", range=order_range, default="1"), &
       key_t("solver", "volterra_coefficient", real_key, &
          "Coefficient of the second term; n = 1.5 for a sphere", "m^-n", default="1.0"), &
       key_t("solver", "continue_after_separation", logical_key, &
-         "Continue to end_time as if the sphere were glued to the plate", default=".false."), &
+         "Continue to end_time as if the sphere were glued to the plate; direct only", &
+         default=".false."), &
       !
       key_t("sweep", "parameter", text_key, "Address of the parameter, as in --set: group.key", &
          required=.true.), &

@@ -38,7 +38,8 @@ module vcor_case_choices
       choice_t('plate.waves', 'constant', &
          'thin plate, alpha(0) times the impulse: exact if elastic (Zener 1941)'), &
       choice_t('plate.waves', 'relaxing', "thin plate, alpha(t) times the impulse: the paper's"), &
-      choice_t('plate.waves', 'frozen', "thin plate, int alpha F' dt: the paper's Fig. 7"), &
+      choice_t('plate.waves', 'frozen', &
+         "thin plate, int alpha F' dt: the paper's Fig. 7; direct only"), &
       choice_t('plate.waves', 'hereditary', &
          'thin plate by the correspondence principle: exact if thin and wide'), &
       choice_t('plate.waves', 'body', &

@@ -344,8 +344,23 @@ contains
 
       call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
-      name = method_for(method, scheme, has_body(case))
+      name = method_for(method, scheme, has_body(case), has_variant(case))
    end function method_of
+
+   !> Whether the impact has one of the paper's variants, which the direct methods solve
+   pure function has_variant(case)
+      type(case_t), intent(in) :: case
+      logical :: has_variant
+
+      character(len=:), allocatable :: waves
+      integer :: order
+      logical :: goes_on
+
+      call case%get('plate', 'waves', waves)
+      call case%get('solver', 'volterra_order', order)
+      call case%get('solver', 'continue_after_separation', goes_on)
+      has_variant = waves == 'frozen' .or. order == 2 .or. goes_on
+   end function has_variant
 
    !> Whether the impact has waves in a plate of any thickness; a rigid plate has none
    pure function has_body(case)

@@ -27,9 +27,9 @@ module vcor_impact_pair
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
    use vcor_numeric_quadrature, only : graded_rule
-   use vcor_tuning, only : digits_lost, earliest_sample, fast_rate, fastest_rate, &
-      full_weight, integral_felt, most_digits_lost, rate_spacing, samples_per_rate, slowest_rate, &
-      weight_power, wide_spacing
+   use vcor_tuning, only : pair_digits, pair_earliest, pair_fast, pair_fastest, &
+      pair_full_weight, pair_integral, pair_most_digits, pair_power, pair_samples, pair_slowest, &
+      pair_spacing
    implicit none
    private
 
@@ -161,20 +161,22 @@ contains
    pure subroutine set_nodes(self)
       type(signed_fit_t), intent(inout) :: self
 
+      ! spacing of the fastest rates
+      real(wp), parameter :: wide_spacing = 2.0_wp*pair_spacing
       real(wp), allocatable :: time(:), node(:)
       integer :: usual, more, i, n
 
-      usual = 2 + int(log(fast_rate/slowest_rate)/rate_spacing)
-      more = nint(log(fastest_rate/fast_rate)/wide_spacing)
-      self%rate = [0.0_wp, slowest_rate*exp(rate_spacing*[(real(i, wp), i=0, usual - 2)])]
+      usual = 2 + int(log(pair_fast/pair_slowest)/pair_spacing)
+      more = nint(log(pair_fastest/pair_fast)/wide_spacing)
+      self%rate = [0.0_wp, pair_slowest*exp(pair_spacing*[(real(i, wp), i=0, usual - 2)])]
       self%rate = [self%rate, self%rate(usual)*exp(wide_spacing*[(real(i, wp), i=1, more)])]
-      n = samples_per_rate*usual
-      time = [(exp(log(earliest_sample/self%rate(usual))*real(n - i, wp)/real(n - 1, wp)), i=1, n)]
-      n = samples_per_rate*more
-      time = [time(1)*exp(-wide_spacing/real(samples_per_rate, wp) &
+      n = pair_samples*usual
+      time = [(exp(log(pair_earliest/self%rate(usual))*real(n - i, wp)/real(n - 1, wp)), i=1, n)]
+      n = pair_samples*more
+      time = [time(1)*exp(-wide_spacing/real(pair_samples, wp) &
          *[(real(n + 1 - i, wp), i=1, n)]), time]
       self%samples = size(time)
-      self%weight = min(1.0_wp, time/full_weight)**weight_power
+      self%weight = min(1.0_wp, time/pair_full_weight)**pair_power
 
       call graded_rule(ends, node, self%share, self%last)
       self%time = [time, node]
@@ -263,7 +265,7 @@ contains
    !> Error that affects an impact. The force is the integral of the modulus with a smooth rate, and
    !> the error of the modulus oscillates, so what counts is the error of the integral since the
    !> time from which values count. It may have different signs in loading and unloading, hence
-   !> the factor `integral_felt`; the error measured was never more than twice this estimate where
+   !> the factor `pair_integral`; the error measured was never more than twice this estimate where
    !> it was above rounding
    pure function error_of_integral(self, deviation, sample, early) result(error)
       type(signed_fit_t), intent(in) :: self
@@ -287,7 +289,7 @@ contains
          step = 0.5_wp*(self%time(i) - self%time(i - 1))
          lost = lost + step*(deviation(i - 1) + deviation(i))
          whole = whole + step*(sample(i - 1) + sample(i))
-         error = max(error, integral_felt*abs(lost)/whole)
+         error = max(error, pair_integral*abs(lost)/whole)
       end do
    end function error_of_integral
 
@@ -325,12 +327,12 @@ contains
          deviation = matmul(self%decay, x) - sample
          misfit = maxval(abs(deviation), mask=self%time(:self%samples) >= ends(checked))
          size_of_all = sum(abs(x*late))
-         cost = misfit + most_digits_lost*size_of_all
+         cost = misfit + pair_most_digits*size_of_all
          if (cost >= least) cycle
          least = cost
          n = self%ranks(i)
          moduli = x
-         error = error_of_integral(self, deviation, sample, early) + digits_lost*size_of_all
+         error = error_of_integral(self, deviation, sample, early) + pair_digits*size_of_all
       end do
    end subroutine find_moduli
 

@@ -17,8 +17,9 @@ module vcor_material_spectrum
    use vcor_kinds, only : pi, unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
-   use vcor_tuning, only : above_peak, below_peak, farther_above, farther_below, &
-      loosest_sum, most_runs, negligible_tail, share_of_integral, slow_run
+   use vcor_tuning, only : spectrum_above, spectrum_below, spectrum_farther_above, &
+      spectrum_farther_below, spectrum_integral, spectrum_loosest, spectrum_runs, spectrum_slow, &
+      spectrum_tail
    implicit none
    private
 
@@ -142,9 +143,9 @@ contains
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
 
-      h = -pi**2/log(min(accuracy, loosest_sum))
-      turn_low = log(slow_run)
-      turn_high = -log(min(accuracy, loosest_sum))/3.0_wp
+      h = -pi**2/log(min(accuracy, spectrum_loosest))
+      turn_low = log(spectrum_slow)
+      turn_high = -log(min(accuracy, spectrum_loosest))/3.0_wp
       if (present(finer)) h = h/finer
       if (present(below)) turn_low = turn_low - below
       if (present(above)) turn_high = turn_high + above
@@ -155,8 +156,8 @@ contains
       if (present(peak) .and. present(distance)) then
          y_p = peak - shift
          ! x_a and x_b must lie where the spectrum is a power of the rate
-         turn_low = min(turn_low, y_p - below_peak)
-         turn_high = max(turn_high, y_p + above_peak)
+         turn_low = min(turn_low, y_p - spectrum_below)
+         turn_high = max(turn_high, y_p + spectrum_above)
          d = distance
          c = max(0.0_wp, 1.0_wp - 2.0_wp*d/pi)
          turn_low = turn_low + c*asinh((turn_low - y_p)/d)
@@ -201,7 +202,7 @@ contains
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
       ! for an exponent near 1 part of the dashpot lies beyond all rates; the integral of E gives it
-      if (tail > negligible_tail*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
+      if (tail > spectrum_tail*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
          + (material%integral(window) - terms%integral(window))
    end subroutine rule_for_spectrum
 
@@ -222,15 +223,15 @@ contains
       integer :: i, refinement
 
       terms%error = huge(1.0_wp)
-      do refinement = 0, most_runs
+      do refinement = 0, spectrum_runs
          call rule_for_spectrum(material, window, accuracy, sum_now, finer=2.0_wp**refinement, &
-            below=farther_below*real(refinement, wp), &
-            above=farther_above*real(refinement, wp))
+            below=spectrum_farther_below*real(refinement, wp), &
+            above=spectrum_farther_above*real(refinement, wp))
          sum_now%error = largest_error(material, window, sum_now)
          do i = 1, size(part)
             expected = material%integral(part(i)*window)
             found = sum_now%integral(part(i)*window)
-            sum_now%error = max(sum_now%error, share_of_integral*abs(found/expected - 1.0_wp))
+            sum_now%error = max(sum_now%error, spectrum_integral*abs(found/expected - 1.0_wp))
          end do
          if (sum_now%error < terms%error) terms = sum_now
          if (terms%error <= 2.0_wp*accuracy) exit

@@ -13,8 +13,8 @@ module vcor_material_table
    use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    use vcor_numeric_nnls, only : solve_nnls
-   use vcor_tuning, only : fastest_of_data, good_misfit, least_gain, merging_loss, &
-      most_refinements, rates_per_decade, samples_per_decade, slowest_of_data
+   use vcor_tuning, only : table_fastest, table_gain, table_loss, table_misfit, table_rates, &
+      table_refinements, table_samples
    implicit none
    private
 
@@ -164,7 +164,7 @@ contains
          return
       end if
       associate (length => self%x(size(self%x)))
-         n = ceiling(length/log(10.0_wp)*samples_per_decade)
+         n = ceiling(length/log(10.0_wp)*table_samples)
          step = length/real(n, wp)
       end associate
       time = self%first_time*exp([(real(i, wp)*step, i=0, n)])
@@ -360,9 +360,9 @@ contains
       integer :: i, n
 
       ! the variable is the logarithm of the rate
-      associate (lower => log(slowest_of_data/time(size(time))), &
-                 upper => log(fastest_of_data/time(1)))
-         n = 1 + ceiling((upper - lower)/log(10.0_wp)*rates_per_decade)
+      associate (lower => log(1.0_wp/(table_fastest*time(size(time)))), &
+                 upper => log(table_fastest/time(1)))
+         n = 1 + ceiling((upper - lower)/log(10.0_wp)*table_rates)
          spacing = (upper - lower)/real(n - 1, wp)
          allocate (grid(n))
          grid = [(lower + real(i, wp)*spacing, i=0, n - 1)]
@@ -371,20 +371,20 @@ contains
       rate = grid
       call fit(time, modulus, rate, weight, residual, misfit)
       width = spacing
-      do i = 1, most_refinements
-         if (misfit <= good_misfit) exit
+      do i = 1, table_refinements
+         if (misfit <= table_misfit) exit
          width = 0.5_wp*width
          finer = refined(rate, width, grid)
          call fit(time, modulus, finer, better, new_residual, new_misfit, guess=rate)
          if (.not. new_residual*real(size(finer), wp)**2 &
-            < least_gain*residual*real(size(rate), wp)**2) exit
+            < table_gain*residual*real(size(rate), wp)**2) exit
          call move_alloc(finer, rate)
          call move_alloc(better, weight)
          residual = new_residual
          misfit = new_misfit
       end do
 
-      bound = max(good_misfit, merging_loss*misfit)
+      bound = max(table_misfit, table_loss*misfit)
       do while (width < 2.0_wp*spacing .and. size(rate) > 1)
          finer = merged(rate, weight(1:), 1.01_wp*width)
          width = 2.0_wp*width

@@ -1,22 +1,22 @@
 !> Internal variable evolution: the fast method for kernels that are sums of exponentials (Section
 !> VI of Green's paper), by collocation with the internal variables eliminated
 !>
-!> Every impact is solved twice on the same panels of time, with eight stages and, by a companion,
-!> with seven. Their difference is the error estimate, of a panel and of the outcome. The equations
-!> of a panel are in `vcor_solver_ive_problem`, the sequence of panels in `vcor_solver_ive_contact`
-!> and `vcor_solver_ive_rebound`.
+!> `vcor_solver_ive_march` solves an impact twice over the same panels, with eight and with seven
+!> stages; the error of every result is the difference of the two. Where one exceeds the accuracy,
+!> the march is repeated with a lower tolerance.
 module vcor_solver_ive
-   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_impulse, col_time, contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : col_impulse, col_time, col_velocity, contact_separated, &
+      trajectory_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_ive_collocator, only : collocator_t, new_collocator
-   use vcor_solver_ive_contact, only : follow
-   use vcor_solver_ive_modes, only : modes_t
+   use vcor_numeric_radau_dense, only : width
+   use vcor_numeric_radau_rule, only : bridge_t, new_bridge, new_rule, rule_t
+   use vcor_solver_ive_course, only : of_cor, of_cor_sphere, of_force, of_time
+   use vcor_solver_ive_lags, only : sums_t
+   use vcor_solver_ive_march, only : follow
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : error_of_kernel, kernel_share, loosest_accuracy, plate_share, &
-      window_growth, window_margin
+   use vcor_tuning, only : ive_loosest, sum_error, sum_growth, sum_share, sum_window
    implicit none
    private
 
@@ -28,105 +28,208 @@ module vcor_solver_ive
       !> Accuracy of the coefficient of restitution used internally [-]; may be higher than
       !> requested
       real(wp) :: accuracy = 0.0_wp
-      type(collocator_t) :: collocator
+      !> Rules of the two solutions
+      type(rule_t) :: rules(2)
+      !> Interpolation between them
+      type(bridge_t) :: bridge
    contains
       procedure :: solve
    end type ive_t
+
+   !> What an attempt takes
+   type :: effort_t
+      !> Tolerance of the march, and accuracy of the sums of exponentials, over their usual ones
+      real(wp) :: march = 1.0_wp, sums = 1.0_wp
+      !> Time up to which the sums are to hold [s]
+      real(wp) :: window = 0.0_wp
+   end type effort_t
 
 contains
 
    !> Build the solver
    subroutine new_ive(self, settings, error)
       type(ive_t), intent(out) :: self
-      !> Accuracy, end and second term
+      !> Accuracy and end
       type(solver_settings_t), intent(in) :: settings
       type(error_t), allocatable, intent(out) :: error
 
+      if (abs(settings%second_coefficient) > 0.0_wp .or. settings%ghost) then
+         call raise(error, error_input, "a second Volterra term and going on after the " &
+            //"separation are solved by method = 'direct' only", &
+            'volterra_order continue_after_separation')
+         return
+      end if
       self%settings = settings
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('ive')
-      self%accuracy = min(self%settings%accuracy, loosest_accuracy)
-      call new_collocator(self%collocator, self%accuracy, settings%second_coefficient, error)
+      self%accuracy = min(self%settings%accuracy, ive_loosest)
+      call new_rule(self%rules(1), width, error)
+      if (.not. allocated(error)) call new_rule(self%rules(2), width - 1, error)
+      if (.not. allocated(error)) call new_bridge(self%bridge, self%rules(1), self%rules(2))
    end subroutine new_ive
 
-   !> Compute the course of an impact. For a kernel that is no finite sum of exponentials, one is
-   !> made for a window of some expected contact times, and again for a longer window if the contact
-   !> outlasts it
+   !> Compute the course of an impact: march, and again while an error exceeds the accuracy, with a
+   !> lower tolerance or a better sum of exponentials, whichever it is that errs; the best counts.
+   !> For a kernel that is no finite sum of exponentials, one is made for a window of some expected
+   !> contact times, and again for a longer one if the contact outlasts it
    subroutine solve(self, impact, trajectory, error)
       class(ive_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      type(modes_t) :: modes
-      real(wp) :: end_time, ghost_end, window, time_scale, error_of_sums
+      integer, parameter :: most = 4
+      type(effort_t) :: effort
+      type(trajectory_t) :: other
+      type(error_t), allocatable :: failure
+      real(wp) :: worst, last
+      integer :: trial
+
+      if (impact%plate%frozen()) then
+         call raise(error, error_input, "waves = 'frozen' are solved by method = 'direct' only", &
+            'waves method')
+         return
+      end if
+      effort%window = sum_window*impact%law%contact_time*impact%time_scale()
+      call attempt(self, impact, effort, trajectory, worst, error)
+      if (allocated(error)) return
+      do trial = 2, most
+         if (.not. worst > self%accuracy) return
+         call attempt(self, impact, effort, other, last, failure)
+         if (allocated(failure)) return
+         if (other%status /= contact_separated) return
+         if (last < worst) then
+            worst = last
+            trajectory = other
+         end if
+      end do
+   end subroutine solve
+
+   !> One march, with an effort; the effort that a better one takes
+   subroutine attempt(self, impact, effort, trajectory, worst, error)
+      class(ive_t), intent(in) :: self
+      type(impact_t), intent(in) :: impact
+      type(effort_t), intent(inout) :: effort
+      type(trajectory_t), intent(out) :: trajectory
+      !> Largest of the errors [-]; 0 if the contact did not separate
+      real(wp), intent(out) :: worst
+      type(error_t), allocatable, intent(out) :: error
+
+      type(sums_t) :: sums
+      real(wp) :: time_scale, end_time, window, of_march(4), of_sums(4)
       logical :: complete
 
+      worst = 0.0_wp
       time_scale = impact%time_scale()
       end_time = self%settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
-      ghost_end = merge(self%settings%end_time, -1.0_wp, self%settings%ghost)
-      window = window_margin*impact%law%contact_time*time_scale
       do
-         call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
-         if (.not. modes%contact%error < 1.0_wp) then
-            call raise(error, error_numerical, 'no sum of exponentials stands for the kernel of ' &
-               //'this contact')
-            return
-         end if
-         if (impact%plate%hereditary()) then
-            call impact%plate%response(window, plate_share*self%accuracy, modes%plate)
-            if (.not. modes%plate%error < 1.0_wp) then
-               call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
-                  //'plate remembers: use another plate.waves')
-               return
-            end if
-         end if
-         ! an exact sum holds for all times, also for ghost lines beyond the end
-         if (.not. (modes%contact%error > 0.0_wp .or. impact%plate%hereditary())) &
+         call find_sums(impact, effort%window, effort%sums*self%accuracy, sums, error)
+         if (allocated(error)) return
+         ! an exact sum holds for all times
+         window = effort%window
+         if (.not. (sums%contact%error > 0.0_wp .or. impact%plate%hereditary())) &
             window = huge(1.0_wp)
-         call follow(self%collocator, impact, modes, self%accuracy, time_scale, end_time, &
-            ghost_end, window, trajectory, complete, error)
+         call follow(self%rules, self%bridge, impact, sums, self%accuracy, effort%march, &
+            time_scale, end_time, window, trajectory, of_march, complete, error)
          if (complete .or. allocated(error)) exit
-         window = window_growth*window
+         effort%window = sum_growth*window
       end do
       if (allocated(error)) return
       trajectory%accuracy = self%settings%accuracy
-      if (trajectory%status == contact_separated) then
-         error_of_sums = error_of_kernel*(error_felt(impact, modes%contact, trajectory) &
-            + modes%plate%error)
-         trajectory%cor_error = trajectory%cor_error + error_of_sums
-         trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
+      if (sums%contact%error > 0.0_wp) trajectory%kernel_terms = size(sums%contact%rates)
+      trajectory%kernel_error = sums%contact%error
+      if (trajectory%status /= contact_separated) return
+      of_sums = errors_of_sums(impact, sums, trajectory)
+      trajectory%cor_error = of_march(of_cor) + of_sums(of_cor)
+      trajectory%cor_sphere_error = of_march(of_cor_sphere) + of_sums(of_cor_sphere)
+      trajectory%contact_time_error = of_march(of_time) + of_sums(of_time)
+      trajectory%max_force_error = of_march(of_force) + of_sums(of_force)
+      worst = largest(trajectory, of_march + of_sums)
+      if (largest(trajectory, of_sums) > 0.5_wp*worst) then
+         effort%sums = 0.1_wp*effort%sums*min(1.0_wp, self%accuracy/worst)
+         effort%window = sum_window*trajectory%state(col_time, trajectory%last)
+      else
+         effort%march = 0.1_wp*effort%march
       end if
-      associate (contact => modes%contact)
-         if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
-         trajectory%kernel_error = contact%error
-      end associate
-   end subroutine solve
+   end subroutine attempt
 
-   !> Error of the kernel as an impact feels it: that of the sum, or that of the kernel's integral
-   !> up to the largest force, times the share of the momentum taken by then, if larger. This is the
-   !> case where heavy losses end the loading early in the window
-   pure function error_felt(impact, contact, trajectory) result(error)
-      type(impact_t), intent(in) :: impact
-      !> Kernel as a sum of exponentials
-      type(exponential_sum_t), intent(in) :: contact
+   !> The largest of the errors; that of the contact time, which moves by several times what the
+   !> velocities do, may be twice as large, relative
+   pure function largest(trajectory, errors)
       type(trajectory_t), intent(in) :: trajectory
-      !> Relative error
-      real(wp) :: error
+      !> Errors of the results, see `course_t`
+      real(wp), intent(in) :: errors(4)
+      !> Error [-]
+      real(wp) :: largest
 
-      real(wp) :: lost
+      largest = max(errors(of_cor), errors(of_cor_sphere), &
+         0.5_wp*errors(of_time)/trajectory%state(col_time, trajectory%last), &
+         errors(of_force)/trajectory%max_force)
+   end function largest
+
+   !> Find the sums of exponentials of contact and plate
+   subroutine find_sums(impact, window, accuracy, sums, error)
+      type(impact_t), intent(in) :: impact
+      !> Time up to which they are to hold [s]
+      real(wp), intent(in) :: window
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
+      type(sums_t), intent(out) :: sums
+      type(error_t), allocatable, intent(out) :: error
+
+      call impact%kernel_exponentials(window, sum_share*accuracy, sums%contact)
+      if (.not. sums%contact%error < 1.0_wp) then
+         call raise(error, error_numerical, 'no sum of exponentials stands for the kernel ' &
+            //'of this contact')
+         return
+      end if
+      if (.not. impact%plate%hereditary()) return
+      call impact%plate%response(window, sum_share*accuracy, sums%plate)
+      if (.not. sums%plate%error < 1.0_wp) call raise(error, error_numerical, 'no sum of ' &
+         //'exponentials stands for what this plate remembers: use another plate.waves')
+   end subroutine find_sums
+
+   !> Errors of the results by those of the sums. The sphere feels the error of the sum for the
+   !> contact, or that of the kernel's integral up to the largest force times the share of the
+   !> momentum taken by then, if larger: heavy losses may end the loading early in the window. The
+   !> velocity of a plate is at most that of the impact, and is off by the error of its memory. An
+   !> error of the velocities moves the end of the contact, the more the slower the separation. The
+   !> largest force F = int k u' dx feels the error of the integral: the total variation of u' is
+   !> some three times u over the time
+   pure function errors_of_sums(impact, sums, trajectory) result(errors)
+      type(impact_t), intent(in) :: impact
+      type(sums_t), intent(in) :: sums
+      type(trajectory_t), intent(in) :: trajectory
+      !> Errors of cor, cor_sphere [-], contact time [s] and largest force [N]
+      real(wp) :: errors(4)
+
+      real(wp), parameter :: variation = 3.0_wp
+      real(wp) :: of_kernel, of_integral, of_plate, felt
       integer :: node
 
-      error = contact%error
-      if (.not. error > 0.0_wp) return
-      do node = 1, trajectory%last - 1
-         if (trajectory%state(col_time, node) >= trajectory%time_of_max_force) exit
-      end do
-      lost = trajectory%state(col_impulse, node)/(impact%mass*impact%velocity)
-      associate (t => trajectory%time_of_max_force)
-         error = max(error, lost*abs(contact%integral(t) &
-            /(impact%kernel_integral(t) + impact%kernel_viscosity()) - 1.0_wp))
+      of_kernel = sums%contact%error
+      of_integral = 0.0_wp
+      if (of_kernel > 0.0_wp) then
+         associate (t => trajectory%time_of_max_force)
+            if (t > 0.0_wp) of_integral = abs(sums%contact%integral(t) &
+               /(impact%kernel_integral(t) + impact%kernel_viscosity()) - 1.0_wp)
+            do node = 1, trajectory%last - 1
+               if (trajectory%state(col_time, node) >= t) exit
+            end do
+         end associate
+         of_kernel = max(of_kernel, of_integral*trajectory%state(col_impulse, node) &
+            /(impact%mass*impact%velocity))
+      end if
+      associate (last => trajectory%state(:, trajectory%last))
+         of_plate = 0.0_wp
+         if (impact%plate%hereditary()) of_plate = max(sums%plate%error, &
+            abs(sums%plate%integral(last(col_time))/(impact%plate%alpha(0.0_wp) &
+            + impact%plate%memory_integral(last(col_time))) - 1.0_wp))
+         felt = sum_error*of_kernel + of_plate
+         errors(of_cor:of_cor_sphere) = felt
+         errors(of_time) = felt*last(col_time)*impact%velocity/abs(last(col_velocity))
+         errors(of_force) = (felt + variation*of_integral)*trajectory%max_force
       end associate
-   end function error_felt
+   end function errors_of_sums
 
 end module vcor_solver_ive

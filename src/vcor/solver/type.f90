@@ -61,21 +61,23 @@ module vcor_solver_type
 
 contains
 
-   !> Method in use: `auto` is coupled for waves in a plate of any thickness, direct if a scheme
-   !> other than product is requested, and ive otherwise, which falls back to direct on failure
-   pure function method_for(method, scheme, has_body) result(name)
+   !> Method in use: `auto` is coupled for waves in a plate of any thickness, direct for the paper's
+   !> schemes and variants, and ive otherwise, which falls back to direct on failure
+   pure function method_for(method, scheme, has_body, has_variant) result(name)
       !> Method requested: auto, ive, direct or coupled
       character(len=*), intent(in) :: method
       !> Scheme of the direct method requested
       character(len=*), intent(in) :: scheme
       !> Whether the impact has waves in a plate of any thickness
       logical, intent(in) :: has_body
+      !> Whether it has a frozen plate or a second Volterra term, or goes on after the separation
+      logical, intent(in) :: has_variant
       !> ive, direct or coupled
       character(len=7) :: name
 
       name = method
       if (method /= 'auto') return
-      name = merge('ive   ', 'direct', scheme == 'product')
+      name = merge('ive   ', 'direct', scheme == 'product' .and. .not. has_variant)
       if (has_body) name = 'coupled'
    end function method_for
 

@@ -123,6 +123,8 @@ contains
       type(solver_settings_t) :: settings
       class(solver_t), allocatable :: solver
       character(len=:), allocatable :: method, scheme
+      ! whether the case has one of the paper's variants, which internal variables do not solve
+      logical :: is_variant
 
       if (method_of(case) == 'coupled') then
          call compare_coupled(case, problem%impact, comparison, error)
@@ -133,9 +135,10 @@ contains
       associate (first => comparison%attempts(attempt_first), &
                  own => comparison%attempts(attempt_case), impact => problem%impact)
          settings = settings_of(case, 'ive')
-         call make_attempt(first, settings, impact, error)
+         is_variant = impact%plate%frozen() .or. abs(settings%second_coefficient) > 0.0_wp
+         if (.not. is_variant) call make_attempt(first, settings, impact, error)
          if (allocated(error)) return
-         if (method == 'auto' .and. allocated(first%failure)) then
+         if (is_variant .or. method == 'auto' .and. allocated(first%failure)) then
             ! like `auto`, use direct alone if ive fails
             comparison%two_methods = .false.
             first = attempt_t()

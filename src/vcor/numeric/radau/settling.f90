@@ -6,14 +6,16 @@
 !>     w = w_start exp(-a) + int exp(-l (t_end - t)) x'(t) dt
 !>       = w_start exp(-a) - int_0^1 exp(-a y^2) dx/dy dy,   a = l D
 !>
-!> is taken exactly for the collocation polynomial x(y), with the moments m_k = int_0^1 exp(-a y^2)
-!> y^k dy. Integration by parts gives 2 a m_(k+2) = (k + 1) m_k - exp(-a), which is stable upwards
+!> is taken exactly for a polynomial x(y) through the values, with the moments
+!> m_k = int_0^1 exp(-a y^2) y^k dy. Integration by parts gives
+!> 2 a m_(k+2) = (k + 1) m_k - exp(-a), which is stable upwards
 !> for large a, from m_0 = sqrt(pi/a)/2 erf(sqrt(a)), and downwards for small a, from series of
 !> positive terms, m_k = exp(-a) sum_i (2 a)^i/((k + 1)(k + 3) .. (k + 1 + 2 i)).
 !>
-!> As dt/dy = 0 at the end, dx/dy = 0 at y = 0, in collocation too. What the values give for this
-!> slope is rounding. It is left out, because fast exponentials, whose m_0 falls only as a^(-1/2),
-!> would be affected most.
+!> As dt/dy = 0 at the end, dx/dy = 0 at y = 0. The polynomial is the one of degree n + 1 that has
+!> this slope: it differs from that of degree n by a multiple of the product of y - y_j, which Radau
+!> integrals do not see, so slow exponentials stay as accurate as at the end of any panel. Fast
+!> ones, whose m_0 falls only as a^(-1/2), would be affected most by a slope.
 !>
 !> The powers of y come from an expansion in Legendre polynomials. Computed from the values in one
 !> step, their coefficients would have independent errors, five digits of 16; this way they belong
@@ -27,14 +29,14 @@ module vcor_numeric_radau_settling
    public :: settling_t, new_settling
 
    !> Highest degree of dx/dy
-   integer, parameter :: highest = 7
+   integer, parameter :: highest = 8
 
    !> Rule for polynomials given by their values at fixed points
    type :: settling_t
       private
       !> From the values at the points to the coefficients of -dx/dy in Legendre polynomials P_k,
-      !> k < n, of 2 y - 1
-      real(wp) :: legendre(0:highest, 0:highest + 1) = 0.0_wp
+      !> k <= n, of 2 y - 1
+      real(wp) :: legendre(0:highest, 0:highest) = 0.0_wp
       !> Coefficient of y^k in P_j(2 y - 1), shape (k, j)
       real(wp) :: power(0:highest, 0:highest) = 0.0_wp
    contains
@@ -51,14 +53,18 @@ contains
       real(wp), intent(in) :: point(0:)
 
       real(wp) :: y(highest + 1), weight(highest + 1), polynomial(0:highest), slope
-      integer :: i, j, k
+      real(wp) :: at(0:ubound(point, 1))
+      integer :: i, j, k, n
 
+      n = ubound(point, 1)
+      at = 1.0_wp - point
       call gauss_nodes(y, weight)
       do j = 1, highest + 1
          polynomial = legendre(highest, 2.0_wp*y(j) - 1.0_wp)
-         do i = 0, ubound(point, 1)
-            slope = slope_of_basis(1.0_wp - point, i, y(j))
-            do k = 0, ubound(point, 1) - 1
+         do i = 0, n
+            slope = slope_of_basis(at, i, y(j)) - slope_of_basis(at, i, 0.0_wp) &
+               *slope_of_product(at, y(j))/slope_of_product(at, 0.0_wp)
+            do k = 0, n
                self%legendre(k, i) = self%legendre(k, i) - real(2*k + 1, wp)*weight(j) &
                   *polynomial(k)*slope
             end do
@@ -97,6 +103,22 @@ contains
       end do
    end function slope_of_basis
 
+   !> Derivative of the product of y - y_j
+   pure function slope_of_product(point, y) result(slope)
+      !> Points y_j, shape (0:n)
+      real(wp), intent(in) :: point(0:)
+      !> Argument
+      real(wp), intent(in) :: y
+      real(wp) :: slope
+
+      integer :: j
+
+      slope = 0.0_wp
+      do j = 0, ubound(point, 1)
+         slope = slope + product(y - point(:j - 1))*product(y - point(j + 1:))
+      end do
+   end function slope_of_product
+
    !> Sum of G_k w_k at the end of the panel
    pure function total(self, moduli, rates, scale, start, x)
       class(settling_t), intent(in) :: self
@@ -108,7 +130,7 @@ contains
       real(wp), intent(in) :: scale
       !> w_k at the start, shape (modes)
       real(wp), intent(in) :: start(:)
-      !> x at the points, dx/dy = 0 at the last one, shape (0:n)
+      !> x at the points, shape (0:n)
       real(wp), intent(in) :: x(0:)
       !> Sum
       real(wp) :: total
@@ -122,8 +144,8 @@ contains
       do k = 1, size(moduli)
          call find_moments(rates(k)*scale, moment, decay)
          total = total + moduli(k)*(decay*start(k) &
-            + ((g(1)*moment(1) + (g(2)*moment(2) + g(3)*moment(3))) &
-            + ((g(4)*moment(4) + g(5)*moment(5)) + (g(6)*moment(6) + g(7)*moment(7)))))
+            + (((g(1)*moment(1) + g(2)*moment(2)) + (g(3)*moment(3) + g(4)*moment(4))) &
+            + ((g(5)*moment(5) + g(6)*moment(6)) + (g(7)*moment(7) + g(8)*moment(8)))))
       end do
    end function total
 

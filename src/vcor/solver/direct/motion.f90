@@ -16,7 +16,7 @@ module vcor_solver_direct_motion
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
    use vcor_solver_direct_weights, only : memory_weights
-   use vcor_tuning, only : near_drift, stiff_step, unresolved_rise
+   use vcor_tuning, only : direct_near, direct_stiff, direct_unresolved
    implicit none
    private
 
@@ -122,18 +122,18 @@ contains
       self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
       response = self%alpha + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
-      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > stiff_step) &
+      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > direct_stiff) &
          self%rule = self%dt*trapezoid
       self%weight = self%rule(1)
       call go_on(self%force, self%rule)
       call go_on(self%whole, self%rule)
       if (.not. self%frozen) return
       self%drift_rule = self%rule
-      if (n <= near_drift) self%drift_rule = self%dt*power_rule(n, self%power)
+      if (n <= direct_near) self%drift_rule = self%dt*power_rule(n, self%power)
       self%half_rise = 0.0_wp
       rise = self%alpha - last_alpha
-      if ((n > near_drift .or. self%smooth) .and. abs(rise &
-          - sum(self%rule*[self%alpha_rate, self%rates])) > unresolved_rise*rise) then
+      if ((n > direct_near .or. self%smooth) .and. abs(rise &
+          - sum(self%rule*[self%alpha_rate, self%rates])) > direct_unresolved*rise) then
          self%drift_rule = 0.0_wp
          self%half_rise = 0.5_wp*rise
       end if

@@ -29,8 +29,8 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : cancelled, first_steps, last_part, least_part, most_for_all, most_work, &
-      share_of_force
+   use vcor_tuning, only : direct_cancelled, direct_first_steps, direct_force, direct_last_part, &
+      direct_least_part, direct_most_steps, direct_most_work
    implicit none
    private
 
@@ -104,9 +104,9 @@ contains
          if (time_step > 0.0_wp) then
             dt = 4.0_wp*time_step
          else
-            ! a fast glassy modulus shortens the steps by a factor of least_part at most
-            dt = impact%law%contact_time/real(first_steps, wp) &
-               *max(impact%fast_time_scale(), impact%time_scale()/least_part)
+            ! a fast glassy modulus shortens the steps by a factor of direct_least_part at most
+            dt = impact%law%contact_time/real(direct_first_steps, wp) &
+               *max(impact%fast_time_scale(), impact%time_scale()/direct_least_part)
             ! make the end time a whole number of steps
             if (end_time > 0.0_wp) &
                dt = end_time/real(ceiling(min(end_time/dt, real(most_steps(.false.), wp))), wp)
@@ -147,7 +147,7 @@ contains
                trajectory%contact_time_error = found%error
                ! cor has the errors of cor_sphere and of the plate, which cancel only by chance
                trajectory%cor_error = max(trajectory%cor_error, &
-                  cancelled*trajectory%cor_sphere_error)
+                  direct_cancelled*trajectory%cor_sphere_error)
                ! if the contact is small when it grows again, few springs resolve it, and the three
                ! runs may not yet show the order
                if (trajectory%regrows) then
@@ -159,7 +159,7 @@ contains
                trajectory%max_force_error = found%error
                if (time_step > 0.0_wp) return
                if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= accuracy &
-                   .and. found%error <= share_of_force*accuracy*force(3)) then
+                   .and. found%error <= direct_force*accuracy*force(3)) then
                   ! the maxima may be less accurate than cor: extrapolate them
                   trajectory%max_force = found%limit
                   found = richardson(depth)
@@ -167,7 +167,7 @@ contains
                   return
                end if
                if (2*trajectory%steps > most_steps(trajectory%regrows) &
-                   .or. 8.0_wp*work > most_work) then
+                   .or. 8.0_wp*work > direct_most_work) then
                   if (trajectory%misses_by_far()) call raise(error, error_numerical, 'the ' &
                      //'accuracy asked for is out of reach of product integration: give a ' &
                      //'larger solver.accuracy')
@@ -186,7 +186,7 @@ contains
       !> Whether the contact has grown again
       logical, intent(in) :: regrows
 
-      most_steps = most_for_all
+      most_steps = direct_most_steps
       if (regrows) most_steps = most_steps/2
    end function most_steps
 
@@ -243,7 +243,7 @@ contains
          end if
          call take_step(run, impact, n)
          work = run%receding%springs%work
-         if (work > most_work) then
+         if (work > direct_most_work) then
             call give_up(.true., error)
             return
          end if
@@ -284,7 +284,7 @@ contains
             call find_dip(trajectory%state(col_force, n - 2:n), theta, ends)
          if (run%receding%shrinks) then
             ends = run%receding%t1(3) <= 0.0_wp
-            crude = crude .or. ends .and. run%receding%t1(2) > last_part*real(turn, wp)
+            crude = crude .or. ends .and. run%receding%t1(2) > direct_last_part*real(turn, wp)
             if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
                trajectory, n)
          else if (ends) then

@@ -15,7 +15,7 @@ module vcor_solver_direct_receding
    use vcor_solver_convolution, only : lengthen
    use vcor_solver_direct_springs, only : springs_t
    use vcor_solver_direct_weights, only : contact_kernel_t
-   use vcor_tuning, only : most_work
+   use vcor_tuning, only : direct_most_work
    implicit none
    private
 
@@ -111,7 +111,7 @@ contains
          self%regrown = .true.
          self%smallest = last(2)
          call self%springs%start(impact, kernel, n - 1, self%turn, self%s, self%ds)
-         if (self%springs%work > most_work) return
+         if (self%springs%work > direct_most_work) return
       end if
       self%t1(1:2) = last
       call self%springs%find_force(impact, kernel, n, self%s(n - 1), self%ds, indentation, &

@@ -21,7 +21,7 @@ module vcor_solver_direct_springs
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : lengthen
    use vcor_solver_direct_weights, only : contact_kernel_t
-   use vcor_tuning, only : most_work
+   use vcor_tuning, only : direct_most_work
    implicit none
    private
 
@@ -66,7 +66,7 @@ module vcor_solver_direct_springs
 
 contains
 
-   !> Follow the springs from first contact to node n, or until `work` exceeds `most_work`
+   !> Follow the springs from first contact to node n, or until `work` exceeds `direct_most_work`
    subroutine start(self, impact, kernel, n, turn, s, ds)
       class(springs_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -91,7 +91,7 @@ contains
       do i = turn + 1, n
          call self%find_levels(kernel, i, s(i - 1), ds)
          call self%accept(impact%law, i, s(i))
-         if (self%work > most_work) return
+         if (self%work > direct_most_work) return
       end do
    end subroutine start
 

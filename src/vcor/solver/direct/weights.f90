@@ -6,7 +6,7 @@ module vcor_solver_direct_weights
    use vcor_kinds, only : wp
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    use vcor_solver_convolution, only : convolution_t
-   use vcor_tuning, only : near => near_kernel
+   use vcor_tuning, only : near => direct_near
    implicit none
    private
 

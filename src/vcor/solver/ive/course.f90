@@ -1,61 +1,98 @@
-!> State of the integration panel by panel, and what contact and rebound share
-!>
-!> The error of a panel is mainly the growth, over the panel, of the difference between the solution
-!> and its companion. `excess` is this over the allowed error, and the next panel may be longer by
-!> the factor excess^(-1/(2 n - 2)) with n stages.
+!> Where a march stands, and what it hands over: the two solutions, the next step, the trajectory
 module vcor_solver_ive_course
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_numeric_radau_algebra, only : width
-   use vcor_solver_ive_panel, only : panel_t, start_t, step_t
-   use vcor_solver_ive_problem, only : panel_problem_t
-   use vcor_tuning, only : best_time, better, better_power, enough_closings, &
-      longest_growth, time_share_continuous, usual_accuracy
+   use vcor_numeric_radau_dense, only : apply, width
+   use vcor_numeric_radau_rule, only : bridge_t
+   use vcor_solver_ive_equations, only : motion_t
+   use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
+   use vcor_solver_ive_panel, only : panel_t, step_t
+   use vcor_tuning, only : ive_harmless, ive_leftover, ive_rounding_per_panel, ive_share
    implicit none
    private
 
-   public :: course_t, share
+   public :: course_t
 
-   !> State of the integration
+   !> Indices of the errors: of cor and cor_sphere [-], of the contact time [s] and the largest
+   !> force [N]
+   integer, parameter, public :: of_cor = 1, of_cor_sphere = 2, of_time = 3, of_force = 4
+
+   !> Error over difference where the error of n stages falls only as n^-2: next to a branch point
+   !> of u, and in the force of modes that settle within a panel, which follows the rate of u
+   real(wp), parameter, public :: at_branch = 1.0_wp/((8.0_wp/7.0_wp)**2 - 1.0_wp)
+
+   !> Largest values in a panel
+   type :: peaks_t
+      !> Indentation [m], and its time since the start of the panel [s]
+      real(wp) :: indentation = 0.0_wp, time_of_indentation = 0.0_wp
+      !> Force [N], its difference from that of the coarse solution [N], and its time since the
+      !> start of the panel [s]
+      real(wp) :: force = 0.0_wp, force_difference = 0.0_wp, time_of_force = 0.0_wp
+   end type peaks_t
+
+   !> The state of a march
    type :: course_t
-      !> Equations of its panels
-      type(panel_problem_t) :: problem
-      !> The panel being tried, and its companion
-      type(panel_t) :: panel, coarse
-      !> State at the start of the panel, and of its companion
-      type(start_t) :: start, coarse_start
-      !> Step of the panel
-      type(step_t) :: step
-      !> Inverse of the Jacobian of the panel
-      real(wp) :: inverse(width, width) = 0.0_wp
+      !> The solution, and the same with one stage less
+      type(motion_t) :: fine, coarse
+      !> Interpolation between them
+      type(bridge_t), pointer :: bridge => null()
+      !> Largest values in the panel
+      type(peaks_t) :: peaks
+      !> Difference of the largest forces so far [N]
+      real(wp) :: force_difference = 0.0_wp
       !> The panel solved last, accepted or not
       type(panel_t) :: previous
-      !> Accuracy of the motion used internally, over `speed` [-]
-      real(wp) :: accuracy = 0.0_wp
+      !> Difference of the two that a panel may add, over `speed`, and accuracy of events [-]
+      real(wp) :: tolerance = 0.0_wp, accuracy = 0.0_wp
       !> Time scale of the contact [s], and its reference velocity [m/s]
       real(wp) :: time_scale = 0.0_wp, speed = 0.0_wp
       !> End of the computation if the contact lasts [s]
       real(wp) :: end_time = 0.0_wp
-      !> Error of the panel over the allowed one, and that of the panel refused before
-      real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp)
-      !> `excess` of the last panel that was refused because of the end of the contact, and the
-      !> number of such refusals
+      !> The step, and the duration wanted for the next one [s]
+      type(step_t) :: step
+      real(wp) :: length = 0.0_wp
+      !> What the panel adds to the difference of the motion, over `speed` [-]
+      real(wp) :: growth = 0.0_wp
+      !> What the panel adds to the difference over what it may add, and that of the panel refused
+      !> before, and its duration [s]
+      real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp), refused_duration = 0.0_wp
+      !> Whether the panel ends with the largest indentation, the contact, the computation
+      logical :: turns = .false., ends = .false., reaches_end_time = .false.
+      !> Times from the end of the panel to the end of the contact in the two solutions [s]
+      real(wp) :: fine_end = 0.0_wp, coarse_end = 0.0_wp
+      !> Effect of the approach between the ends of its panels on a rebound, over `speed`: of this
+      !> panel, and the largest so far [-]
+      real(wp) :: inner_now = 0.0_wp, inner = 0.0_wp
+      !> Sum of what the panels have added to the difference, without cancellation [-]
+      real(wp) :: added = 0.0_wp
+      !> Velocity that both solutions miss alike after the largest indentation, over `speed` [-]
+      real(wp) :: kick = 0.0_wp
+      !> Errors of the results, once the contact has ended
+      real(wp) :: last_errors(4) = 0.0_wp
+      !> `excess` of the end refused before
       real(wp) :: refused_end = huge(1.0_wp)
+      !> Number of ends refused, an end that was found [s], and the time before which it is not
+      !> tried again [s]
       integer :: refused_ends = 0
-      !> Whether the contact, or the computation, ends with the panel
-      logical :: ends = .false., reaches_end_time = .false.
+      real(wp) :: end_found = 0.0_wp, lead = 0.0_wp
+      !> Rebound: time left, and the duration allowed for the last panel [s]
+      real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
+      !> Rebound: t1' [-] and t1'' [1/s], for a guess
+      real(wp) :: rate = 0.0_wp, bend = 0.0_wp
+      !> Rebound: number of panels in a row in which t1 seems to rise
+      integer :: growths = 0
    contains
       procedure :: begin
       procedure :: record
       procedure :: motion_error
-      procedure :: alpha_rate
-      procedure :: plate_gains
-      procedure :: growth_of
-      procedure :: is_best_end
-      procedure :: growth_of_step
-      procedure :: improvement
-      procedure :: time_tolerance
+      procedure :: inner_error
+      procedure :: missed_kick
+      procedure :: find_ends
+      procedure :: end_without_force
+      procedure :: errors
+      procedure :: find_peaks
+      procedure :: record_peaks
    end type course_t
 
 contains
@@ -63,18 +100,17 @@ contains
    !> Set the first node of a trajectory
    subroutine begin(self, trajectory)
       class(course_t), intent(in) :: self
-      type(trajectory_t), intent(inout) :: trajectory
+      type(trajectory_t), intent(out) :: trajectory
 
       integer, parameter :: usual_panels = 8
 
-      associate (rule => self%problem%collocator%rule, impact => self%problem%impact)
+      associate (rule => self%fine%rule, start => self%fine%start)
          call trajectory%reserve(usual_panels*rule%stages)
          trajectory%state(:, 0) = 0.0_wp
-         trajectory%state(col_sphere_velocity, 0) = impact%velocity
-         trajectory%state(col_force, 0) = impact%first_force()
-         trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
-         trajectory%state(col_velocity, 0) = impact%velocity &
-            - trajectory%state(col_plate_velocity, 0)
+         trajectory%state(col_sphere_velocity, 0) = self%fine%impact%velocity
+         trajectory%state(col_force, 0) = start%force
+         trajectory%state(col_plate_velocity, 0) = start%alpha*start%force
+         trajectory%state(col_velocity, 0) = start%velocity
          trajectory%share(0) = 0.0_wp
          trajectory%stages = rule%stages
          allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))
@@ -82,27 +118,28 @@ contains
       end associate
    end subroutine begin
 
-   !> Add the nodes of a panel to the trajectory
-   subroutine record(self, panel, trajectory)
+   !> Add the nodes of the panel to the trajectory; its rates of the indentation are known
+   subroutine record(self, trajectory)
       class(course_t), intent(in) :: self
-      type(panel_t), intent(in) :: panel
       type(trajectory_t), intent(inout) :: trajectory
 
       integer :: n, first, j
 
-      associate (rule => self%problem%collocator%rule, impact => self%problem%impact)
+      associate (panel => self%fine%panel, rule => self%fine%rule, impact => self%fine%impact)
          n = panel%stages
          call trajectory%reserve(trajectory%final + n)
          call trajectory%add_map(panel%map)
-         first = trajectory%final + 1
-         trajectory%final = trajectory%final + n
+         first = trajectory%final
+         trajectory%final = first + n
+         trajectory%last = trajectory%final
          trajectory%steps = trajectory%steps + 1
-         trajectory%share(first:trajectory%final) = rule%weight(1:n) &
-            *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))*panel%force(1:n)
+         trajectory%share(first + 1:first + n) = rule%weight(1:n)*panel%pace(rule%point(1:n)) &
+            *panel%force(1:n)
          do j = 1, n
-            associate (state => trajectory%state(:, first + j - 1))
+            associate (state => trajectory%state(:, first + j))
                state(col_time) = panel%time(j)
                state(col_indentation) = panel%indentation(j)
+               state(col_velocity) = panel%velocity(j)
                state(col_force) = panel%force(j)
                state(col_impulse) = panel%impulse(j)
                state(col_sphere) = impact%free_path(panel%time(j)) &
@@ -110,129 +147,361 @@ contains
                state(col_sphere_velocity) = impact%free_velocity(panel%time(j)) &
                   - panel%impulse(j)/impact%mass
                state(col_plate) = state(col_sphere) - panel%indentation(j)
-               state(col_plate_velocity) = self%problem%plate_velocity(panel, j)
-               state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
+               state(col_plate_velocity) = state(col_sphere_velocity) - panel%velocity(j)
             end associate
          end do
       end associate
    end subroutine record
 
-   !> Growth over the panel of the difference between solution and companion
-   pure function growth_of(self, one, other) result(difference)
-      class(course_t), intent(in) :: self
-      !> Values of the solution at the points of the panel
-      real(wp), intent(in) :: one(0:width)
-      !> Values of the companion
-      real(wp), intent(in) :: other(0:width)
-      real(wp) :: difference
-
-      associate (n => self%panel%stages)
-         difference = abs((one(n) - other(n - 1)) - (one(0) - other(0)))
-      end associate
-   end function growth_of
-
-   !> Contribution of a panel to the error of the motion, from its companion: through the impulse,
-   !> in the velocity of the sphere or alpha' I of the plate; the indentation; the velocity of a
-   !> plate that drifts
+   !> What the panel adds to the difference between the two solutions, in all that results are made
+   !> of: the impulse in the velocities of sphere and plate, the indentation, and the energy that
+   !> the plate takes, in which errors of the force do not average out
    pure function motion_error(self) result(error)
       class(course_t), intent(in) :: self
-      !> Error over `speed`: without gravity that of the coefficient of restitution [-]
+      !> Error over `speed` [-]
       real(wp) :: error
 
-      associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
-         error = self%growth_of(panel%impulse, coarse%impulse) &
-            *max(1.0_wp/impact%mass, self%alpha_rate())/self%speed &
-            + self%growth_of(panel%indentation, coarse%indentation) &
-            /(self%speed*self%time_scale)
-         if (impact%plate%drifts()) &
-            error = error + self%growth_of(panel%drift, coarse%drift)/self%speed
+      real(wp) :: rate
+      integer :: n
+
+      associate (fine => self%fine%panel, coarse => self%coarse%panel, impact => self%fine%impact)
+         n = fine%stages
+         rate = 1.0_wp/impact%mass
+         if (fine%alpha(n) > fine%alpha(0) .and. .not. impact%plate%hereditary()) &
+            rate = max(rate, impact%plate%alpha_rate(fine%time(n), fine%alpha(n)))
+         error = (added(fine%impulse, coarse%impulse)*rate &
+            + added(fine%indentation, coarse%indentation)/self%time_scale)/self%speed
+         ! what the memory of a plate gets wrong at first contact it forgets
+         if (fine%time(0) > 0.0_wp) error = error + added(fine%drift, coarse%drift)/self%speed
+         error = max(error, abs(self%fine%work_in_panel() - self%coarse%work_in_panel()) &
+            /(0.5_wp*impact%mass*self%speed**2))
       end associate
+
+   contains
+
+      !> What the panel adds to the difference between two values
+      pure function added(one, other) result(difference)
+         !> Values of the two solutions at the points
+         real(wp), intent(in) :: one(0:width), other(0:width)
+         real(wp) :: difference
+
+         real(wp) :: before, after
+
+         before = one(0) - other(0)
+         after = one(n) - other(n - 1)
+         difference = abs(after - before)
+         ! a difference that only decays is no error
+         if (before*after >= 0.0_wp) difference = max(0.0_wp, abs(after) - abs(before))
+      end function added
    end function motion_error
 
-   !> Rate of alpha at the end of the panel, for a plate with velocity alpha F + alpha' I
-   pure function alpha_rate(self) result(rate)
+   !> Error of the approach between the ends of its panels as a rebound feels it, which reads it at
+   !> all times. Errors of a polynomial alternate in sign from node to node, and integrals over them
+   !> feel a tenth. That of s is a tenth of the difference of the two solutions. That of u as a
+   !> polynomial from u of the polynomial of s matters as far as modes neither follow u nor stand
+   !> still while it alternates, see `approach_t`
+   pure function inner_error(self) result(error)
       class(course_t), intent(in) :: self
-      !> Rate [m/(N s2)]
-      real(wp) :: rate
+      !> Error over `speed` [-]
+      real(wp) :: error
 
-      rate = 0.0_wp
-      associate (n => self%panel%stages, panel => self%panel, &
-                 plate => self%problem%impact%plate)
-         if (.not. plate%drifts() .and. panel%alpha(n) > panel%alpha(0)) &
-            rate = plate%alpha_rate(panel%time(n), panel%alpha(n))
+      real(wp), parameter :: tenth = 0.1_wp
+      real(wp), dimension(width) :: s, u
+      real(wp) :: difference, start_u, stiffness, swing
+      integer :: k
+
+      associate (fine => self%fine%panel, coarse => self%coarse%panel, down => self%bridge%down, &
+                 law => self%fine%impact%law, n => self%coarse%panel%stages, &
+                 contact => self%fine%sums%contact)
+         s = fine%indentation(0)*down(:, 0) + apply(down(:, 1:), fine%indentation(1:))
+         difference = maxval(abs(s(:n) - coarse%indentation(1:n))) &
+            - abs(fine%indentation(0) - coarse%indentation(0))
+         error = tenth**2*max(0.0_wp, difference)/(self%speed*self%time_scale)
+         start_u = law%u(fine%indentation(0))
+         u = start_u*down(:, 0) + apply(down(:, 1:), law%u(fine%indentation(1:)))
+         stiffness = 0.0_wp
+         do k = 1, size(contact%rates)
+            swing = contact%rates(k)*fine%step%duration/real(fine%stages, wp)
+            stiffness = stiffness + contact%moduli(k)*swing/(1.0_wp + swing**2)
+         end do
+         error = max(error, tenth*maxval(abs(u(:n) - law%u(s(:n))))*stiffness &
+            *fine%step%duration/(self%fine%impact%mass*self%speed))
       end associate
-   end function alpha_rate
+   end function inner_error
 
-   !> Rate of the plate's velocity alpha' I at the end of the contact, where F is zero; alpha grows
-   !> about as a power of time or exponentially there
-   pure function plate_gains(self) result(gain)
-      !> The course, its panel the last one of the contact
+   !> Velocity that both solutions miss alike after the largest indentation. Modes that are fast
+   !> beside the rebound make a layer of width 1/l there, before which t1 goes back as fast as time
+   !> runs, and after which the relaxed contact gives way: with s' = -a (t - t_m) and the stiffness
+   !> K of the slower modes, K (s(t_m) - s(t1)) = a G/l (t - t_m - 1/l). The force u'' (s(t_m) -
+   !> s(t1))^2 K/2 has a kink at 1/l, and a polynomial that continues it to t_m misses the impulse
+   !> u'' (a G)^2/(6 K l^5). A panel of n stages resolves modes with l dt/dtheta < n (n + 1)
+   pure function missed_kick(self) result(kick)
+      !> The course, its panel the first of a rebound
       class(course_t), intent(in) :: self
-      !> Rate [m/s2]
-      real(wp) :: gain
+      !> Velocity over `speed` [-]
+      real(wp) :: kick
 
-      associate (n => self%panel%stages, panel => self%panel, alpha_rate => self%alpha_rate())
-         gain = 0.0_wp
-         if (alpha_rate > 0.0_wp) gain = alpha_rate*panel%impulse(n) &
-            *max(1.0_wp/panel%time(n), alpha_rate/panel%alpha(n))
+      ! part of s over which the law is differentiated again
+      real(wp), parameter :: part = 0.1_wp
+      real(wp) :: slower, bend, acceleration, ratio, rate, s
+      integer :: k, n
+
+      n = self%fine%panel%stages
+      associate (panel => self%fine%panel, contact => self%fine%sums%contact, &
+                 law => self%fine%impact%law, mass => self%fine%impact%mass)
+         s = panel%indentation(0)
+         bend = (law%slope(s) - law%slope((1.0_wp - part)*s))/(part*s)
+         acceleration = panel%force(0)/mass
+         kick = 0.0_wp
+         do k = 1, size(contact%rates)
+            rate = contact%rates(k)
+            slower = contact%equilibrium + sum(contact%moduli, contact%rates < rate)
+            ratio = contact%moduli(k)/slower
+            kick = kick + slower*ratio*(1.0_wp + ratio)/rate**5 &
+               *exp(-real(n*(n + 1), wp)/(rate*panel%step%duration))
+         end do
+         kick = abs(bend)*acceleration**2*kick/(6.0_wp*mass*self%speed)
       end associate
-   end function plate_gains
+   end function missed_kick
 
-   !> Whether an end cannot be improved: rounding in the force of stiff internal variables, or an
-   !> inherited error, limits the accuracy of its time
-   pure function is_best_end(self) result(best)
-      !> The course, its panel judged
+   !> Find the end of the contact in both solutions
+   subroutine find_ends(self, found)
+      class(course_t), intent(inout) :: self
+      !> Whether there is one
+      logical, intent(out) :: found
+
+      integer :: event
+
+      event = merge(event_close, event_end, self%fine%recedes)
+      call time_to_event(self%fine, event, self%fine_end, found)
+      if (found) call time_to_event(self%coarse, event, self%coarse_end, found)
+   end subroutine find_ends
+
+   !> Move the last node of the fine solution to the end of the contact, which it almost is
+   pure subroutine end_without_force(self)
+      class(course_t), intent(inout) :: self
+
+      real(wp) :: v(2)
+
+      v = velocities(self%fine, self%fine_end)
+      associate (panel => self%fine%panel, n => self%fine%panel%stages, time => self%fine_end)
+         panel%time(n) = panel%time(n) + time
+         panel%indentation(n) = panel%indentation(n) + v(1)*time
+         panel%velocity(n) = v(1)
+         panel%second_impulse(n) = panel%second_impulse(n) + panel%impulse(n)*time
+         panel%impulse(n) = panel%impulse(n) + 0.5_wp*panel%force(n)*time
+         panel%force(n) = 0.0_wp
+         if (self%fine%impact%plate%hereditary()) return
+         panel%alpha(n) = self%fine%impact%plate%alpha(panel%time(n))
+         panel%indentation(n) = self%fine%impact%free_path(panel%time(n)) &
+            - panel%second_impulse(n)/self%fine%impact%mass - panel%alpha(n)*panel%impulse(n)
+      end associate
+   end subroutine end_without_force
+
+   !> Errors of the results: the difference between those of the two solutions at their own ends
+   pure function errors(self, panels, max_force) result(error)
+      !> The course, at the end of the contact
       class(course_t), intent(in) :: self
-      logical :: best
+      !> Number of panels
+      integer, intent(in) :: panels
+      !> Largest force [N]
+      real(wp), intent(in) :: max_force
+      !> Errors of cor, cor_sphere [-], contact time [s] and largest force [N]
+      real(wp) :: error(4)
 
-      best = self%excess > 0.5_wp*self%refused_end .or. self%refused_ends + 1 >= enough_closings
-   end function is_best_end
+      ! indentation at the end of a panel over that at its start below which it is next to the
+      ! branch point of u at s = 0
+      real(wp), parameter :: near_branch = 0.05_wp
+      real(wp) :: fine(2), coarse(2), factor, least, left
 
-   !> Factor by which the next panel may be longer than an accepted one
-   pure function growth_of_step(self) result(factor)
-      class(course_t), intent(in) :: self
-      real(wp) :: factor
+      fine = velocities(self%fine, self%fine_end)
+      coarse = velocities(self%coarse, self%coarse_end)
+      associate (v0 => self%fine%impact%velocity, panel => self%fine%panel, &
+                 n => self%fine%panel%stages)
+         ! both solutions share what Newton's method leaves
+         left = ive_leftover*self%tolerance*real(panels, wp)
+         factor = 1.0_wp
+         if (panel%indentation(n) < near_branch*panel%indentation(0)) factor = at_branch
+         least = min((self%added + left)*self%speed/v0, ive_harmless*self%accuracy)
+         error(of_cor:of_cor_sphere) = max(factor*abs(fine - coarse)/v0, least) &
+            + self%inner*self%speed/v0 + ive_rounding_per_panel*real(panels, wp)
+         if (self%fine%recedes) factor = at_branch
+         error(of_time) = max(factor*abs(self%fine_end - self%coarse_end), least*panel%time(n)) &
+            + self%inner*panel%time(n)
+         ! a kick at rest changes the velocity of a rebound to second order, but its time to first
+         error(of_time) = error(of_time) + self%kick*self%speed/max(abs(fine(1)), tiny(1.0_wp)) &
+            *panel%time(n)
+         ! the force feels in full what one panel adds
+         error(of_force) = max(at_branch*self%force_difference, min(self%added*self%speed/v0, &
+            ive_share*self%accuracy)*max_force)
+      end associate
+   end function errors
 
-      factor = min(longest_growth, max(self%excess, tiny(1.0_wp)) &
-         **(-1.0_wp/real(2*self%panel%stages - 2, wp)))
-   end function growth_of_step
+   !> Relative velocity and velocity of the sphere at the end of the contact, where F = 0
+   pure function velocities(motion, time) result(v)
+      type(motion_t), intent(in) :: motion
+      !> Time from the end of the panel to the end of the contact [s]
+      real(wp), intent(in) :: time
+      !> Velocities [m/s]
+      real(wp) :: v(2)
 
-   !> Difference of the solution to its companion over its error: a fixed factor for panels as short
-   !> as at the usual accuracy, less for longer ones
-   pure function improvement(self) result(factor)
-      class(course_t), intent(in) :: self
-      real(wp) :: factor
+      real(wp) :: impulse
 
-      factor = better*min(1.0_wp, (usual_accuracy/self%accuracy)**better_power)
-   end function improvement
+      associate (panel => motion%panel, n => motion%panel%stages, impact => motion%impact, &
+                 plate => motion%impact%plate)
+         impulse = panel%impulse(n) + 0.5_wp*panel%force(n)*time
+         v = impact%free_velocity(panel%time(n) + time) - impulse/impact%mass
+         if (plate%hereditary()) then
+            v(1) = v(1) - panel%drift(n)
+            if (.not. motion%recedes) v(1) = v(1) &
+               - time*panel%slope_at_end(motion%rule, panel%drift)
+         else if (plate%moves()) then
+            v(1) = v(1) - impulse*plate%alpha_rate(panel%time(n) + time)
+         end if
+      end associate
+   end function velocities
 
-   !> Relative difference of the contact times of the two solutions that is accepted. Neither of
-   !> them resolves the modes of a continuous spectrum that settle within the last panel; that of a
-   !> rebound is short enough
-   pure function time_tolerance(self) result(tolerance)
-      class(course_t), intent(in) :: self
-      !> Tolerance [-]
-      real(wp) :: tolerance
+   !> Find the largest indentation and force in the panel
+   subroutine find_peaks(self)
+      class(course_t), intent(inout) :: self
 
-      tolerance = self%improvement()
-      if (self%problem%modes%contact%error > 0.0_wp .and. &
-          .not. associated(self%problem%approach)) tolerance = time_share_continuous
-      tolerance = max(tolerance*self%accuracy, best_time)
-   end function time_tolerance
+      real(wp) :: other
 
-   !> Error over the allowed error, limited to `immense`: the forces of a fluid may be almost zero
-   pure function share(actual, allowed)
-      !> Error, >= 0
-      real(wp), intent(in) :: actual
-      !> Allowed error, >= 0
-      real(wp), intent(in) :: allowed
-      real(wp) :: share
+      associate (fine => self%fine%panel, coarse => self%coarse%panel, peaks => self%peaks)
+         call find_peak(self, fine%indentation, .true., peaks%indentation, other, &
+            peaks%time_of_indentation)
+         call find_peak(self, fine%force, .false., peaks%force, peaks%force_difference, &
+            peaks%time_of_force)
+      end associate
+   end subroutine find_peaks
 
-      real(wp), parameter :: immense = 1.0e30_wp
+   !> Record the peaks of an accepted panel if they exceed those of earlier ones
+   pure subroutine record_peaks(self, trajectory)
+      class(course_t), intent(inout) :: self
+      type(trajectory_t), intent(inout) :: trajectory
 
-      share = 0.0_wp
-      if (actual > 0.0_wp) share = immense
-      if (actual < immense*allowed) share = actual/allowed
-   end function share
+      associate (peaks => self%peaks, start => self%fine%start%time)
+         if (peaks%indentation > trajectory%max_indentation) then
+            trajectory%max_indentation = peaks%indentation
+            trajectory%time_of_max_indentation = start + peaks%time_of_indentation
+         end if
+         if (peaks%force > trajectory%max_force) then
+            trajectory%max_force = peaks%force
+            trajectory%time_of_max_force = start + peaks%time_of_force
+            self%force_difference = peaks%force_difference
+         end if
+      end associate
+   end subroutine record_peaks
+
+   !> Maximum of indentation or force in a panel. Where the two solutions differ too much inside the
+   !> panel, it is solved up to the maximum: collocation is most accurate at the end
+   subroutine find_peak(self, value, of_indentation, peak, difference, time)
+      class(course_t), intent(inout) :: self
+      !> Values at the points of the panel
+      real(wp), intent(in) :: value(0:width)
+      !> Whether these are the indentation, otherwise the force
+      logical, intent(in) :: of_indentation
+      !> Maximum, and its difference from that of the coarse solution
+      real(wp), intent(out) :: peak, difference
+      !> Its time since the start of the panel [s]
+      real(wp), intent(out) :: time
+
+      ! error of the position in the panel; the maximum feels its square, the pressure at that time
+      ! feels it as it is
+      real(wp), parameter :: position = 1.0e-14_wp
+      real(wp) :: slopes(0:width), theta, beyond, coarse
+      integer :: n, j, other
+
+      associate (rule => self%fine%rule, map => self%fine%panel%map)
+         n = rule%stages
+         j = maxloc(value(0:n), 1) - 1
+         slopes = rule%slopes(value)
+         other = j + merge(1, -1, slopes(j) > 0.0_wp)
+         beyond = -0.5_wp*slopes(j)**2/sum(rule%derivative(j, :)*slopes)
+         ! close to an end of the panel a parabola has it
+         if (other < 0 .or. other > n .or. (j == 0 .or. j == n) &
+             .and. beyond >= 0.0_wp .and. beyond < ive_harmless*self%accuracy*value(j)) then
+            time = merge(self%fine%panel%step%duration, 0.0_wp, j == n)
+            peak = value(j)
+            if (other >= 0 .and. other <= n) peak = peak + beyond
+            difference = abs(value(j) - end_value(self%coarse%panel, &
+               merge(self%coarse%panel%stages, 0, j == n)))
+            return
+         end if
+         theta = rule%crossing(slopes, min(j, other), position)
+         time = theta*(map(1) + map(2)*theta)
+         peak = value_inside(self%fine, of_indentation, theta)
+         ! the difference may have a zero there
+         difference = max(abs(peak - value_inside(self%coarse, of_indentation, theta)), &
+            abs(value(j) - value_inside(self%coarse, of_indentation, rule%point(j))), &
+            abs(value(other) - value_inside(self%coarse, of_indentation, rule%point(other))))
+         if (at_branch*difference <= 0.5_wp*self%accuracy*peak) return
+         coarse = peak - difference
+         call value_at(self%fine, of_indentation, .false., time, peak)
+         if (of_indentation) return
+         call value_at(self%coarse, of_indentation, .true., time, coarse)
+         difference = abs(peak - coarse)
+      end associate
+
+   contains
+
+      !> Value at a point of a panel
+      pure function end_value(panel, point)
+         type(panel_t), intent(in) :: panel
+         integer, intent(in) :: point
+         real(wp) :: end_value
+
+         end_value = merge(panel%indentation(point), panel%force(point), of_indentation)
+      end function end_value
+   end subroutine find_peak
+
+   !> Indentation or force between the nodes of a panel. The force is no polynomial, but u(s) is
+   !> known from s, and what is interpolated is the part of it that has relaxed in slow modes
+   pure function value_inside(motion, of_indentation, theta) result(value)
+      type(motion_t), intent(in) :: motion
+      !> Whether the indentation, otherwise the force
+      logical, intent(in) :: of_indentation
+      !> Position in the panel
+      real(wp), intent(in) :: theta
+      !> Value
+      real(wp) :: value
+
+      real(wp) :: basis(0:width), stiffness
+      integer :: n
+
+      associate (panel => motion%panel, contact => motion%sums%contact, law => motion%impact%law)
+         n = panel%stages
+         basis = motion%rule%basis(theta)
+         value = sum(basis*panel%indentation)
+         if (of_indentation) return
+         stiffness = contact%equilibrium + sum(contact%moduli, &
+            contact%rates*panel%step%duration < real(n, wp))
+         value = stiffness*law%u(value) - sum(basis(:n)*(stiffness*law%u(panel%indentation(:n)) &
+            - panel%force(:n)))
+      end associate
+   end function value_inside
+
+   !> Indentation or force at a time within a panel, by solving it up to there
+   subroutine value_at(motion, of_indentation, fresh, time, value)
+      type(motion_t), intent(inout) :: motion
+      !> Whether the indentation, otherwise the force
+      logical, intent(in) :: of_indentation
+      !> Whether it has no Jacobian of its own panel
+      logical, intent(in) :: fresh
+      !> Time since the start of the panel [s]
+      real(wp), intent(in) :: time
+      !> The value; unchanged if the equations cannot be solved
+      real(wp), intent(inout) :: value
+
+      type(panel_t) :: whole
+
+      whole = motion%panel
+      call solve_up_to(motion, time, fresh)
+      associate (panel => motion%panel)
+         if (panel%converged) value = merge(panel%indentation(panel%stages), &
+            panel%force(panel%stages), of_indentation)
+      end associate
+      motion%panel = whole
+   end subroutine value_at
 
 end module vcor_solver_ive_course

@@ -1,336 +1,233 @@
-!> Newton's method for the equations x + M f(x) = r of a panel
-!>
-!> The Jacobian 1 + M diag(f') is inverted and kept as long as the iteration contracts. Panels next
-!> to a solved one, and companions by interpolation between their stages and those of the solution,
-!> use the same inverse, so no matrix is formed for them. The last panel of a receding contact is
-!> solved together with its length.
+!> Newton's method for the equations of a panel, and the guesses it starts from
 module vcor_solver_ive_newton
    use vcor_kinds, only : wp
-   use vcor_numeric_radau_algebra, only : apply, invert, width
-   use vcor_numeric_radau_collocation, only : closing, collocation_t
-   use vcor_solver_ive_panel, only : panel_t, start_t, step_of, step_t
-   use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
-      panel_problem_t, product_with_m
-   use vcor_tuning, only : farthest_closing, farthest_rebound, most_iterations, &
-      newton_close, no_better, noticeable_time, slowest_contraction
+   use vcor_numeric_radau_dense, only : apply, invert, width
+   use vcor_numeric_radau_rule, only : bridge_t, rule_t
+   use vcor_solver_ive_equations, only : equations_t, motion_t
+   use vcor_solver_ive_panel, only : panel_t, step_t
+   use vcor_tuning, only : ive_contraction, ive_rounding
    implicit none
    private
 
-   public :: guess, solve, solve_near, improve, solve_companion, close_contact
+   public :: solve_panel, solve_companion, guess_growth, guess_rebound
 
-   !> State of the iteration
-   type :: newton_t
-      !> Whether the next correction needs a new Jacobian
-      logical :: stale = .true.
-      !> Size of the last correction
-      real(wp) :: last = 0.0_wp
-      !> Whether the equations have been solved
-      logical :: converged = .false.
-      !> Whether they cannot be solved
-      logical :: failed = .false.
-   end type newton_t
+   !> Maximum number of iterations
+   integer, parameter :: most_iterations = 40
+   !> Position beyond the end of a panel up to which its polynomials are a guess; those of t1, which
+   !> has a vertex, diverge sooner
+   real(wp), parameter :: farthest = 2.5_wp, farthest_t1 = 1.2_wp
 
 contains
 
-   !> Guess the indentation in the next panel from the polynomial of the last one that was solved
-   subroutine guess(problem, previous, step, start, panel)
-      type(panel_problem_t), intent(in) :: problem
-      !> The panel solved last, accepted or not; without stages if there is none
-      type(panel_t), intent(in) :: previous
+   !> Solve the equations of a panel, from a guess at indentation or t1 at the stages
+   subroutine solve_panel(motion, step, fresh)
+      !> The solution; `panel` is solved, or not converged
+      type(motion_t), intent(inout) :: motion
       type(step_t), intent(in) :: step
-      type(start_t), intent(in) :: start
-      type(panel_t), intent(inout) :: panel
-
-      real(wp) :: time(width)
-
-      associate (rule => problem%collocator%rule)
-         time = start%time + rule%times(step%index, step%map_scale())
-         if (previous%stages == 0) then
-            panel%indentation(1:) = problem%impact%free_path(time)
-         else
-            panel%indentation(1:) = rule%extend(previous%indentation, previous%theta(time))
-         end if
-      end associate
-   end subroutine guess
-
-   !> Solve the equations of a panel by Newton's method
-   subroutine solve(problem, rule, step, start, panel, inverse)
-      type(panel_problem_t), intent(in) :: problem
-      type(collocation_t), intent(in) :: rule
-      type(step_t), intent(in) :: step
-      type(start_t), intent(in) :: start
-      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages
-      type(panel_t), intent(inout) :: panel
-      !> Inverse of the Jacobian, for use in neighbouring panels
-      real(wp), intent(out) :: inverse(width, width)
-
-      type(equations_t) :: equations
-      type(newton_t) :: newton
-      integer :: iteration
-
-      call problem%set_up(rule, step, start, panel, equations)
-      do iteration = 1, most_iterations
-         call correct(newton, problem, equations, inverse, panel)
-         if (newton%converged .or. newton%failed) exit
-      end do
-      panel%converged = newton%converged
-      if (.not. panel%converged) return
-      call problem%integrate(equations, panel)
-      if (.not. equations%closes) return
-      call problem%set_end_condition(rule, equations, start, panel)
-      call problem%set_end_drift(rule, equations, start, panel)
-   end subroutine solve
-
-   !> Correct a panel, and estimate the error that remains: with a new Jacobian it falls as u does
-   !> at its branch point, or faster, otherwise linearly
-   subroutine correct(self, problem, e, inverse, panel)
-      type(newton_t), intent(inout) :: self
-      type(panel_problem_t), intent(in) :: problem
-      type(equations_t), intent(inout) :: e
-      !> Inverse of the Jacobian, computed again if `stale`
-      real(wp), intent(inout) :: inverse(width, width)
-      type(panel_t), intent(inout) :: panel
+      !> Whether to begin with a Jacobian of its own, and not with the last one
+      logical, intent(in) :: fresh
 
       ! largest u [m^n] or force [N]
       real(wp), parameter :: beyond_all = 1.0e120_wp
-      real(wp) :: change(width), force(width), second(width, width)
-      real(wp) :: unit, size, rate, left
-      logical :: regular
-      integer :: n, j
+      type(equations_t) :: e
+      real(wp) :: change(width), unit, size, last, left, rate, noise
+      logical :: stale, regular
+      integer :: iteration
 
-      n = panel%stages
-      call problem%evaluate(e, panel)
-      ! stop a diverging iteration before products overflow
-      self%failed = .not. largest(e%f) < beyond_all
-      if (self%failed) return
-      if (self%stale .and. .not. e%formed) call form_matrix(e)
-      change = e%right - e%x - product_with_m(e, e%f)
-      if (allocated(e%lag)) then
-         call problem%second_term(e, force, second)
-         change = change - lost_indentation(e, apply(e%map%left, force))
-      end if
-      if (e%closes) change(n) = 0.0_wp
-      if (self%stale) then
+      call motion%set_up(step, e)
+      motion%panel%converged = .false.
+      stale = fresh
+      last = 0.0_wp
+      noise = merge(ive_rounding, 0.0_wp, motion%recedes)
+      do iteration = 1, most_iterations
+         call motion%evaluate(e)
+         ! a diverging iteration ends before products overflow
+         if (.not. largest(e%f) < beyond_all) return
+         if (stale .and. .not. e%formed) call e%form_matrix()
+         change = e%right - e%x - e%matrix_times(e%f)
+         if (e%closes) change(motion%rule%stages) = 0.0_wp
+         if (stale) then
+            call form_inverse(motion, e, regular)
+            if (.not. regular) return
+         end if
+         change = apply(motion%inverse, change)
+         unit = motion%largest_condition
+         if (.not. motion%recedes) unit = largest(e%x + change)
+         if (.not. unit > 0.0_wp) return
+         call motion%move(e, change)
+         size = largest(change)/unit
+         ! with a Jacobian of its own the error falls as u does at its branch point, or faster
+         if (stale) then
+            left = size*sqrt(size)
+            stale = size > ive_contraction
+         else
+            rate = 1.0_wp
+            if (iteration > 1) rate = min(1.0_wp, size/last)
+            left = 2.0_wp*size*rate
+            stale = rate > ive_contraction .and. (iteration > 1 .or. size > ive_contraction)
+         end if
+         motion%panel%converged = left <= motion%tolerance &
+            .or. iteration > 1 .and. size <= noise .and. .not. size < 0.5_wp*last
+         if (motion%panel%converged) exit
+         last = max(size, tiny(1.0_wp))
+      end do
+      if (motion%panel%converged) call motion%finish(e)
+   end subroutine solve_panel
+
+   !> Inverse of the Jacobian 1 + M f'
+   subroutine form_inverse(motion, e, regular)
+      type(motion_t), intent(inout) :: motion
+      !> Equations of the panel, evaluated
+      type(equations_t), intent(in) :: e
+      !> Whether there is one
+      logical, intent(out) :: regular
+
+      integer :: j, n
+
+      n = motion%rule%stages
+      associate (inverse => motion%inverse)
          do j = 1, width
             inverse(:, j) = e%matrix(:, j)*e%slope(j)
-            if (allocated(e%lag)) inverse(:, j) = inverse(:, j) &
-               + lost_indentation(e, apply(e%map%left, second(:, j)))*e%slope(j)
             if (e%closes) inverse(n, j) = 0.0_wp
             inverse(j, j) = inverse(j, j) + 1.0_wp
          end do
          call invert(inverse, regular)
-         self%failed = .not. regular
-         if (self%failed) return
-      end if
-      change = apply(inverse, change)
-      unit = problem%largest_condition
-      if (.not. unit > 0.0_wp) unit = largest(e%x + change)
-      ! a panel without any indentation is none
-      self%failed = .not. unit > 0.0_wp
-      if (self%failed) return
-      call problem%move(e, change, panel)
-      size = largest(change)/unit
-      if (self%stale) then
-         left = min(problem%impact%law%u(size), size)
-         self%stale = size > newton_close
-      else
-         rate = min(1.0_wp, size/self%last)
-         left = size*rate/(1.0_wp - 0.5_wp*rate)
-         self%stale = rate > slowest_contraction
-      end if
-      self%converged = left <= problem%tolerance &
-         .or. size <= problem%noise .and. .not. size < 0.5_wp*self%last
-      self%last = size
-   end subroutine correct
+      end associate
+   end subroutine form_inverse
 
-   !> Solve the equations of a panel with the Jacobian of another: a neighbour of other length, or
-   !> the panel whose companion it is. No matrix is formed, so this costs half of a full solution
-   subroutine solve_near(problem, rule, step, start, inverse, panel)
-      type(panel_problem_t), intent(in) :: problem
-      type(collocation_t), intent(in) :: rule
-      type(step_t), intent(in) :: step
-      type(start_t), intent(in) :: start
-      !> Inverse of the Jacobian of a panel with the full number of stages
-      real(wp), intent(in) :: inverse(width, width)
-      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages. Not converged if
-      !> the Jacobian is not good enough
-      type(panel_t), intent(inout) :: panel
+   !> Solve a panel that has been solved with one more stage, from the interpolated solution and
+   !> with the same Jacobian, between two interpolations: each correction leaves a thirtieth of the
+   !> error
+   subroutine solve_companion(motion, finer, bridge)
+      !> The solution; its panel is solved, or not converged
+      type(motion_t), intent(inout) :: motion
+      !> The other one, its panel solved
+      type(motion_t), intent(in) :: finer
+      type(bridge_t), intent(in) :: bridge
 
-      type(equations_t) :: equations
-      real(wp) :: change(width), size, unit, last, rest, contraction
+      type(equations_t) :: e
+      real(wp) :: change(width), unit, size, last
       integer :: iteration
-      logical :: coarse
 
-      panel%converged = .false.
-      if (abs(problem%collocator%second_coefficient) > 0.0_wp) return
-      coarse = rule%stages < problem%collocator%rule%stages
-      call problem%set_up(rule, step, start, panel, equations)
+      call guess()
+      call motion%set_up(finer%panel%step, e)
+      motion%panel%converged = .false.
       last = 0.0_wp
       do iteration = 1, most_iterations
-         call problem%evaluate(equations, panel)
-         change = equations%right - equations%x - product_with_m(equations, equations%f)
-         if (equations%closes) change(rule%stages) = 0.0_wp
-         if (coarse) change = apply(problem%collocator%from_coarse, change)
-         change = apply(inverse, change)
-         if (coarse) change = apply(problem%collocator%to_coarse(:, 1:), change)
-         size = largest(change)
-         unit = problem%largest_condition
-         if (.not. equations%rebounds) unit = largest(equations%x)
-         ! the guess was useless
-         if (.not. size <= unit) return
-         call problem%move(equations, change, panel)
-         if (iteration > 1) then
-            contraction = size/last
-            if (.not. contraction <= slowest_contraction) return
-            rest = abs(change(rule%stages))
-            if (equations%closes) rest = size
-            panel%converged = rest*contraction <= problem%collocator%near_tolerance*unit
-            if (panel%converged) exit
-         end if
+         call motion%evaluate(e)
+         change = e%right - e%x - e%matrix_times(e%f)
+         if (e%closes) change(motion%rule%stages) = 0.0_wp
+         change = apply(bridge%down(:, 1:), apply(finer%inverse, apply(bridge%up, change)))
+         unit = motion%largest_condition
+         if (.not. motion%recedes) unit = largest(e%x + change)
+         size = largest(change)/max(unit, tiny(1.0_wp))
+         ! the guess, or the Jacobian, was useless
+         if (.not. size <= 1.0_wp .or. iteration > 1 .and. size > ive_contraction*last &
+             .and. size > ive_rounding) exit
+         call motion%move(e, change)
+         motion%panel%converged = iteration > 1 .and. size*size <= motion%tolerance*last &
+            .or. iteration > 1 .and. motion%recedes .and. size <= ive_rounding &
+            .and. .not. size < 0.5_wp*last .or. size <= motion%tolerance
+         if (motion%panel%converged) exit
          last = max(size, tiny(1.0_wp))
       end do
-      if (.not. panel%converged) return
-      call problem%integrate(equations, panel)
-      if (equations%closes) then
-         call problem%set_end_condition(rule, equations, start, panel)
-         call problem%set_end_drift(rule, equations, start, panel)
-      else if (.not. equations%rebounds) then
-         ! keep the remaining error in the force, so that the motion agrees with the impulse
-         panel%indentation(1:) = problem%impact%free_path(panel%time(1:)) &
-            - panel%second_impulse(1:)*equations%inverse_mass
-         if (.not. equations%frozen) &
-            panel%indentation(1:) = panel%indentation(1:) - panel%alpha(1:)*panel%impulse(1:)
-         if (equations%frozen .or. equations%remembers) &
-            panel%indentation(1:) = panel%indentation(1:) - panel%deflection(1:)
-         panel%indentation(rule%stages + 1:) = 0.0_wp
-      end if
-   end subroutine solve_near
-
-   !> Improve motion and forces of a guessed panel by two fixed-point iterations, s from the forces
-   !> of the previous s. The error of an interpolated guess oscillates from stage to stage, and two
-   !> integrations leave little of it
-   subroutine improve(problem, step, start, tolerance, panel)
-      !> The problem, its contact growing
-      type(panel_problem_t), intent(in) :: problem
-      type(step_t), intent(in) :: step
-      type(start_t), intent(in) :: start
-      !> Error of the indentation allowed, over its largest value
-      real(wp), intent(in) :: tolerance
-      !> The panel; on entry `indentation` holds a guess at the stages. It is solved if the second
-      !> iteration changes the indentation by more than the tolerance
-      type(panel_t), intent(inout) :: panel
-
-      type(equations_t) :: equations
-      real(wp) :: guessed(width), numbers(width), inverse(width, width)
-      integer :: iteration
-
-      guessed = panel%indentation(1:)
-      panel%converged = .false.
-      if (.not. abs(problem%collocator%second_coefficient) > 0.0_wp) then
-         call problem%set_up(problem%collocator%rule, step, start, panel, equations)
-         do iteration = 1, 2
-            call problem%evaluate(equations, panel)
-            panel%indentation(1:) = equations%right - product_with_m(equations, equations%f)
-         end do
-         panel%converged = largest(panel%indentation(1:) - equations%x) &
-            <= tolerance*largest(equations%x)
-      end if
-      if (panel%converged) then
-         call problem%find_forces(equations, panel, numbers)
+      if (motion%panel%converged) then
+         call motion%finish(e)
       else
-         panel%indentation(1:) = guessed
-         call solve(problem, problem%collocator%rule, step, start, panel, inverse)
+         call guess()
+         call solve_panel(motion, finer%panel%step, .true.)
       end if
-   end subroutine improve
-
-   !> Solve the companion of a panel, from the companion's own start
-   subroutine solve_companion(problem, step, start, panel, inverse, companion)
-      type(panel_problem_t), intent(in) :: problem
-      type(step_t), intent(in) :: step
-      !> State of the companion at the start of the panel
-      type(start_t), intent(in) :: start
-      type(panel_t), intent(in) :: panel
-      !> Inverse of the Jacobian of the panel
-      real(wp), intent(in) :: inverse(width, width)
-      type(panel_t), intent(out) :: companion
-
-      real(wp) :: own_inverse(width, width)
-
-      associate (collocator => problem%collocator)
-         call guess_companion()
-         call solve_near(problem, collocator%coarse, step, start, inverse, companion)
-         if (companion%converged) return
-         call guess_companion()
-         call solve(problem, collocator%coarse, step, start, companion, own_inverse)
-      end associate
 
    contains
 
-      !> Guess the companion by interpolation
-      subroutine guess_companion()
+      !> Interpolate the finer solution
+      subroutine guess()
 
-         associate (collocator => problem%collocator)
-            companion%indentation(1:) = collocator%coarsened(panel%indentation)
-            if (associated(problem%approach)) companion%t1(1:) = collocator%coarsened(panel%t1)
-         end associate
-      end subroutine guess_companion
+         motion%panel%indentation = 0.0_wp
+         motion%panel%t1 = 0.0_wp
+         if (motion%recedes) then
+            motion%panel%t1(1:) = finer%panel%t1(0)*bridge%down(:, 0) &
+               + apply(bridge%down(:, 1:), finer%panel%t1(1:))
+         else
+            motion%panel%indentation(1:) = finer%panel%indentation(0)*bridge%down(:, 0) &
+               + apply(bridge%down(:, 1:), finer%panel%indentation(1:))
+         end if
+      end subroutine guess
    end subroutine solve_companion
 
-   !> Solve the last panel of a receding contact, and find its duration, for which N = 0 at the end
-   subroutine close_contact(problem, start, time_tolerance, length, panel, inverse)
-      !> The problem, its contact receding
-      type(panel_problem_t), intent(in) :: problem
-      type(start_t), intent(in) :: start
-      !> Relative error allowed for the time of the end
-      real(wp), intent(in) :: time_tolerance
-      !> A guess at the duration, on return the duration [s]
-      real(wp), intent(inout) :: length
-      !> The panel, its t1 guessed; not converged on failure
-      type(panel_t), intent(inout) :: panel
-      !> Inverse of its Jacobian
-      real(wp), intent(out) :: inverse(width, width)
+   !> Guess the indentation in a panel from the polynomial of the panel solved last, else a parabola
+   subroutine guess_growth(motion, previous, step)
+      type(motion_t), intent(inout) :: motion
+      !> The panel solved last, accepted or not; without stages if there is none
+      type(panel_t), intent(in) :: previous
+      type(step_t), intent(in) :: step
 
-      type(equations_t) :: equations
-      type(newton_t) :: newton
-      real(wp) :: fall, correction, last_correction
-      integer :: n, iteration
+      real(wp) :: elapsed, theta
+      integer :: j
 
-      panel%converged = .false.
-      correction = huge(1.0_wp)
-      associate (rule => problem%collocator%rule)
-         n = rule%stages
-         do iteration = 1, most_iterations
-            if (.not. length > epsilon(length)*start%time) return
-            call problem%set_up(rule, step_of(closing, length), start, panel, equations)
-            panel%t1(n) = 0.0_wp
-            call correct(newton, problem, equations, inverse, panel)
-            if (newton%failed) return
-            call problem%integrate(equations, panel)
-            call problem%set_end_condition(rule, equations, start, panel)
-            ! N is linear in (1 - theta)^2 near the end
-            fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
-            if (.not. fall > 0.0_wp) return
-            last_correction = correction
-            correction = farthest_closing*length
-            if (abs(panel%condition(n)) < farthest_closing*fall) &
-               correction = panel%condition(n)/fall*length
-            correction = sign(correction, panel%condition(n))
-            panel%converged = newton%converged .and. (abs(correction) &
-               <= time_tolerance*(start%time + length) &
-               ! rounding in the condition of stiff internal variables ends the iteration, too
-               .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
-               .and. abs(correction) >= no_better*abs(last_correction))
-            if (panel%converged) then
-               call problem%set_end_drift(rule, equations, start, panel)
-               exit
+      associate (s => motion%panel%indentation, start => motion%start, impact => motion%impact)
+         do j = 1, width
+            elapsed = elapsed_at(motion%rule, step, j)
+            theta = farthest
+            if (previous%stages > 0) theta = previous%theta(start%time + elapsed)
+            if (theta < farthest) then
+               s(j) = motion%rule%interpolate(previous%indentation, theta)
+            else if (start%time > 0.0_wp) then
+               s(j) = start%indentation + elapsed*(start%velocity &
+                  - 0.5_wp*elapsed*start%force/impact%mass)
+            else
+               s(j) = impact%free_path(elapsed)
             end if
-            length = length + correction
-            ! move t1 to the same times in the panel of the new length
-            panel%t1(1:) = rule%extend(panel%t1, min(panel%theta(start%time &
-               + rule%times(closing, length)), farthest_rebound))
          end do
       end associate
-   end subroutine close_contact
+   end subroutine guess_growth
+
+   !> Guess t1 in a panel of the rebound
+   subroutine guess_rebound(motion, previous, step, rate, bend, ends)
+      type(motion_t), intent(inout) :: motion
+      !> The panel of the rebound solved last, accepted or not; without stages if there is none
+      type(panel_t), intent(in) :: previous
+      type(step_t), intent(in) :: step
+      !> t1' [-] and t1'' [1/s] at the start
+      real(wp), intent(in) :: rate, bend
+      !> Whether the contact ends with the panel, with t1 = 0
+      logical, intent(in) :: ends
+
+      ! slowest fall of t1 after the largest indentation, and the share of the approach for which it
+      ! holds
+      real(wp), parameter :: slowest = 0.5_wp, near = 0.1_wp
+      real(wp) :: elapsed, theta, vertex
+      integer :: j
+
+      vertex = motion%approach%end
+      associate (t1 => motion%panel%t1, start => motion%start)
+         do j = 1, width
+            elapsed = elapsed_at(motion%rule, step, j)
+            t1(j) = start%t1 + elapsed*(rate + 0.5_wp*bend*elapsed)
+            if (ends) t1(j) = t1(j) - (start%t1 &
+               + step%duration*(rate + 0.5_wp*bend*step%duration))*(elapsed/step%duration)**2
+            if (previous%stages > 0) then
+               theta = previous%theta(start%time + elapsed)
+               if (theta <= farthest_t1) t1(j) = motion%rule%interpolate(previous%t1, theta)
+            end if
+            t1(j) = min(t1(j), vertex - slowest*min(start%time + elapsed - vertex, near*vertex))
+         end do
+      end associate
+   end subroutine guess_rebound
+
+   !> Time of a stage since the start of a step [s]
+   pure function elapsed_at(rule, step, stage) result(elapsed)
+      type(rule_t), intent(in) :: rule
+      type(step_t), intent(in) :: step
+      !> Stage
+      integer, intent(in) :: stage
+      !> Time [s]
+      real(wp) :: elapsed
+
+      associate (map => rule%map(step%kind), theta => rule%point(stage))
+         elapsed = step%duration*theta*(map%slope + map%bend*theta)
+      end associate
+   end function elapsed_at
 
    !> Largest magnitude of the elements
    pure function largest(x)

@@ -1,0 +1,644 @@
+!> The march of the internal-variable method: one loop over the panels of an impact
+!>
+!> While the contact grows, panels begin in the square root of time, in which the motion is analytic
+!> from first contact. By Boltzmann's law the contact ends with a panel whose length is such that
+!> F = 0 at its end. If the contact recedes, the panel of the largest indentation ends with it, and
+!> the rebound follows; its last panel is in the square root of the time left, with N = 0 at its
+!> end.
+!>
+!> Each panel is solved with eight stages and, as part of another solution of the whole impact, with
+!> seven. What it adds to the difference of the two decides whether it is accepted, and how long the
+!> next one is. Where both are blind alike, `judge` asks in addition.
+module vcor_solver_ive_march
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated, refuse_growth, trajectory_t
+   use vcor_kinds, only : finest_accuracy, wp
+   use vcor_numeric_radau_dense, only : width
+   use vcor_numeric_radau_rule, only : bridge_t, closing, doubling, linear, opening, rule_t
+   use vcor_solver_ive_approach, only : approach_t
+   use vcor_solver_ive_course, only : at_branch, course_t, of_cor, of_cor_sphere, of_time
+   use vcor_solver_ive_equations, only : motion_t
+   use vcor_solver_ive_event, only : cut_at_event, event_close, event_end, event_turn, &
+      first_without_force, time_to_event
+   use vcor_solver_ive_lags, only : sums_t
+   use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
+   use vcor_solver_ive_panel, only : step_t
+   use vcor_tuning, only : ive_continuous, ive_cut, ive_ends, ive_first, ive_growth, &
+      ive_leftover, ive_part, ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, &
+      ive_safety, ive_share, ive_tolerable, ive_usual, sum_error
+   implicit none
+   private
+
+   public :: follow
+
+   !> Maximum number of panels, refused ones included
+   integer, parameter :: most_panels = 20000
+   !> Number of times that a panel in which t1 rises is halved before the rise is real
+   integer, parameter :: most_halvings = 4
+
+contains
+
+   !> March through an impact
+   subroutine follow(rules, bridge, impact, sums, accuracy, share, time_scale, end_time, window, &
+                     trajectory, errors, complete, error)
+      !> Rules of the two solutions
+      type(rule_t), intent(in), target :: rules(2)
+      type(bridge_t), intent(in), target :: bridge
+      type(impact_t), intent(in), target :: impact
+      type(sums_t), intent(in), target :: sums
+      !> Accuracy wanted of the coefficient of restitution, and the share of it that a panel may add
+      !> to the difference of the two solutions
+      real(wp), intent(in) :: accuracy, share
+      !> Time scale of the contact [s]
+      real(wp), intent(in) :: time_scale
+      !> End of the computation if the contact lasts [s]
+      real(wp), intent(in) :: end_time
+      !> Time up to which the sums hold [s]
+      real(wp), intent(in) :: window
+      type(trajectory_t), intent(out) :: trajectory
+      !> Errors of the results, see `course_t`
+      real(wp), intent(out) :: errors(4)
+      !> Whether the window was long enough
+      logical, intent(out) :: complete
+      type(error_t), allocatable, intent(out) :: error
+
+      type(course_t) :: course
+      type(approach_t), target :: approach
+      integer :: trial
+      logical :: over, solved
+
+      errors = 0.0_wp
+      complete = .true.
+      call start(course, rules, bridge, impact, sums, approach, accuracy, share, time_scale, &
+         end_time)
+      call course%begin(trajectory)
+      do trial = 1, most_panels
+         call choose_step(course)
+         if (.not. course%step%duration > epsilon(1.0_wp)*course%fine%start%time) exit
+         call solve_step(course, solved)
+         if (.not. solved) cycle
+         call judge(course, trajectory)
+         if (is_refused(course)) then
+            call shorten(course)
+            cycle
+         end if
+         if (course%fine%recedes) then
+            if (is_rising(course)) then
+               course%growths = course%growths + 1
+               if (course%growths > most_halvings) then
+                  call stop_growing(course, trajectory, error)
+                  return
+               end if
+               call halve(course)
+               cycle
+            end if
+         end if
+         call accept(course, trajectory)
+         complete = .not. course%fine%start%time > window
+         if (.not. complete) return
+         call trajectory%stop_at_rest(impact, course%reaches_end_time, over)
+         if (over .or. course%reaches_end_time) return
+         if (course%ends) then
+            trajectory%status = contact_separated
+            errors = course%last_errors
+            return
+         end if
+         call go_on(course)
+      end do
+      call trajectory%stop_at_rest(impact, .true., over)
+      if (over) return
+      call raise_no_end(course, error)
+   end subroutine follow
+
+   !> Start at first contact
+   subroutine start(self, rules, bridge, impact, sums, approach, accuracy, share, time_scale, &
+                    end_time)
+      type(course_t), intent(out) :: self
+      type(rule_t), intent(in), target :: rules(2)
+      type(bridge_t), intent(in), target :: bridge
+      type(impact_t), intent(in), target :: impact
+      type(sums_t), intent(in), target :: sums
+      type(approach_t), intent(inout), target :: approach
+      real(wp), intent(in) :: accuracy, share, time_scale, end_time
+
+      real(wp) :: floor
+
+      self%time_scale = time_scale
+      self%end_time = end_time
+      self%speed = impact%speed_scale(time_scale)
+      ! relative to `speed`: v0 may be near zero for a sphere that is put down
+      self%accuracy = max(accuracy*(impact%velocity/self%speed), min(accuracy, finest_accuracy))
+      ! the noise of moduli of both signs must not be resolved
+      floor = 0.0_wp
+      if (any(sums%contact%moduli < 0.0_wp)) floor = sum_error*sums%contact%error
+      self%tolerance = max(ive_share*share*self%accuracy, floor, ive_rounding_per_panel)
+      self%bridge => bridge
+      call start_motion(self%fine, rules(1))
+      call start_motion(self%coarse, rules(2))
+      self%length = ive_first*impact%law%contact_time*time_scale &
+         *(self%tolerance/ive_usual)**(1.0_wp/14.0_wp)
+      ! modes that settle within the first panel are not resolved: its impulse is off by a fixed
+      ! part of itself
+      if (sums%contact%error > 0.0_wp) &
+         self%length = self%length*sqrt(min(1.0_wp, self%tolerance/ive_continuous))
+
+   contains
+
+      !> Start one of the two solutions
+      subroutine start_motion(motion, rule)
+         type(motion_t), intent(inout) :: motion
+         type(rule_t), intent(in), target :: rule
+
+         motion%impact => impact
+         motion%sums => sums
+         motion%rule => rule
+         motion%approach => approach
+         ! rounding in products with a matrix
+         motion%tolerance = max(width**2*epsilon(1.0_wp), ive_leftover*self%tolerance)
+         associate (now => motion%start)
+            now%alpha = impact%plate%alpha(0.0_wp)
+            now%force = impact%first_force()
+            now%velocity = impact%velocity - now%alpha*now%force
+            allocate (now%lag(size(sums%contact%rates)), source=0.0_wp)
+            if (impact%plate%hereditary()) &
+               allocate (now%plate_lag(size(sums%plate%rates)), source=0.0_wp)
+         end associate
+      end subroutine start_motion
+   end subroutine start
+
+   !> Choose the next step
+   subroutine choose_step(self)
+      type(course_t), intent(inout) :: self
+
+      real(wp) :: part, doubled
+
+      associate (step => self%step, time => self%fine%start%time)
+         self%ends = .false.
+         step%kind = linear
+         step%duration = self%length
+         if (self%fine%recedes) then
+            self%ends = self%rest <= self%end_length
+            if (self%ends) then
+               step = step_t(closing, self%rest)
+            else
+               ! the end is a branch point, from which panels keep a distance
+               part = min(ive_part, max(0.5_wp, 1.0_wp - self%end_length/self%rest))
+               step%duration = min(self%length, part*self%rest)
+               if (.not. time > self%fine%approach%end .and. is_fast(self)) step%kind = opening
+            end if
+         else
+            if (time < self%lead) step%duration = min(self%length, ive_part*(self%end_found - time))
+            ! a doubling is tried where it may do without the safety of the length
+            doubled = 3.0_wp*time
+            if (.not. self%refused < huge(1.0_wp)) doubled = ive_safety*(2.0_wp + ive_safety)*time
+            if (.not. time > 0.0_wp) then
+               step%kind = opening
+            else if (step%duration >= doubled .and. (self%fine%sums%contact%error > 0.0_wp &
+                     .or. self%fine%impact%law%receding)) then
+               step = step_t(doubling, 3.0_wp*time)
+            end if
+         end if
+         self%reaches_end_time = time + step%duration >= self%end_time
+         if (.not. self%reaches_end_time) return
+         self%ends = .false.
+         step%duration = self%end_time - time
+         if (any(step%kind == [doubling, closing])) step%kind = linear
+      end associate
+   end subroutine choose_step
+
+   !> Whether the motion after the largest indentation begins with a root of time: the kernel is
+   !> infinite at first or has a dashpot
+   pure function is_fast(self)
+      type(course_t), intent(in) :: self
+      logical :: is_fast
+
+      associate (contact => self%fine%sums%contact)
+         is_fast = contact%error > 0.0_wp .or. contact%viscosity > 0.0_wp
+      end associate
+   end function is_fast
+
+   !> Solve the next panel twice; a panel that contains an event ends with it
+   subroutine solve_step(self, solved)
+      type(course_t), intent(inout) :: self
+      !> Whether there are two solutions; if not, another step is chosen
+      logical, intent(out) :: solved
+
+      associate (fine => self%fine)
+         self%turns = .false.
+         if (fine%recedes) then
+            call solve_rebound(self, solved)
+            if (.not. solved) return
+         else
+            call guess_growth(fine, self%previous, self%step)
+            call solve_panel(fine, self%step, .true.)
+            if (fine%panel%converged) call look_for_event(self)
+         end if
+         solved = fine%panel%converged
+         if (solved) then
+            self%previous = fine%panel
+            self%step = fine%panel%step
+            call solve_companion(self%coarse, fine, self%bridge)
+            solved = self%coarse%panel%converged
+         end if
+         if (.not. solved) call halve(self)
+      end associate
+   end subroutine solve_step
+
+   !> Look for the event in a panel while the contact grows, and cut it there
+   subroutine look_for_event(self)
+      type(course_t), intent(inout) :: self
+
+      ! time to an event after the panel, over its duration
+      real(wp), parameter :: soon = 0.15_wp
+      real(wp) :: theta, time
+      integer :: event, j
+      logical :: found
+
+      associate (fine => self%fine, panel => self%fine%panel, rule => self%fine%rule)
+         if (fine%impact%law%receding) then
+            call fine%find_velocity()
+            j = findloc(panel%velocity(1:) < 0.0_wp, .true., 1)
+            self%turns = j > 0
+            if (self%turns) theta = rule%crossing(panel%velocity, j - 1, 1.0e-8_wp)
+         else
+            j = first_without_force(panel)
+            self%ends = j > 0
+            if (self%ends) then
+               ! the panel is so crude that its force is negative while the indentation grows
+               panel%converged = panel%force(j - 1) > 0.0_wp
+               if (.not. panel%converged) return
+               theta = rule%crossing(panel%force, j - 1, 1.0e-8_wp)
+            end if
+         end if
+         event = merge(event_turn, event_end, fine%impact%law%receding)
+         if (j > 0) then
+            time = theta*(panel%map(1) + panel%map(2)*theta)
+         else
+            ! an event that follows soon belongs to this panel
+            if (self%reaches_end_time .or. .not. fine%start%time > 0.0_wp) return
+            call time_to_event(fine, event, time, found)
+            if (.not. found .or. .not. time > 0.0_wp .or. time > soon*panel%step%duration) return
+            time = time + panel%step%duration
+            self%turns = event == event_turn
+            self%ends = event == event_end
+         end if
+         self%reaches_end_time = .false.
+         call cut_at_event(fine, event, self%accuracy, time, found)
+         panel%converged = found
+      end associate
+   end subroutine look_for_event
+
+   !> Solve a panel of the rebound
+   subroutine solve_rebound(self, solved)
+      type(course_t), intent(inout) :: self
+      !> False if the panel only showed where the contact ends
+      logical, intent(out) :: solved
+
+      ! t1 at the end over that at the start of the last panel that counts as zero: N near zero may
+      ! be rounding
+      real(wp), parameter :: near_zero = 0.3_wp
+      real(wp) :: theta
+      integer :: j
+      logical :: found
+
+      solved = .true.
+      associate (fine => self%fine, panel => self%fine%panel)
+         call guess_rebound(fine, self%previous, self%step, self%rate, self%bend, self%ends)
+         call solve_panel(fine, self%step, .true.)
+         if (.not. panel%converged) return
+         if (self%ends) then
+            call cut_at_event(fine, event_close, min(self%accuracy, ive_usual), &
+               panel%step%duration, found)
+            panel%converged = found
+            if (found) panel%converged = abs(panel%t1(panel%stages)) <= near_zero*fine%start%t1
+            if (panel%converged) self%rest = panel%step%duration
+         else
+            j = findloc(panel%condition(1:panel%stages) <= 0.0_wp, .true., 1)
+            if (j == 0) return
+            theta = fine%rule%crossing(panel%condition, j - 1, 1.0e-3_wp)
+            self%rest = theta*(panel%map(1) + panel%map(2)*theta)
+            self%previous = panel
+            solved = .false.
+         end if
+      end associate
+   end subroutine solve_rebound
+
+   !> What the panel adds to the difference of the two solutions, over what it may add. In addition:
+   !> the time of the end; the approach between the ends of its panels, which a rebound reads; and
+   !> panels that hide an end
+   subroutine judge(self, trajectory)
+      type(course_t), intent(inout) :: self
+      type(trajectory_t), intent(in) :: trajectory
+
+      real(wp) :: error(4), inherited
+      logical :: found
+
+      associate (fine => self%fine, impact => self%fine%impact)
+         ! the indentation is what is left of the fall g t^2/2: its rounding must not be resolved
+         self%tolerance = max(self%tolerance, ive_rounding_of_fall*0.5_wp*impact%gravity &
+            *fine%start%time**2/(self%speed*self%time_scale))
+         self%growth = self%motion_error()
+         self%excess = self%growth/self%tolerance
+         call fine%find_velocity()
+         if (impact%law%receding .and. .not. fine%recedes) then
+            self%inner_now = self%inner_error()
+            self%excess = max(self%excess, self%inner_now/self%tolerance)
+         end if
+         associate (coarse => self%coarse%panel)
+            coarse%velocity(coarse%stages) = self%coarse%velocity_at(coarse%stages)
+         end associate
+         if (self%ends) then
+            call self%find_ends(found)
+            if (found) then
+               error = self%errors(0, trajectory%max_force)
+               if (self%refused_ends < ive_ends) self%excess = max(self%excess, &
+                  error(of_cor)/self%accuracy, error(of_cor_sphere)/self%accuracy, &
+                  error(of_time)/(self%accuracy*fine%panel%time(fine%panel%stages)))
+            else
+               self%excess = huge(1.0_wp)
+            end if
+         end if
+         if (fine%recedes .and. self%step%kind == linear &
+             .and. .not. fine%start%time > fine%approach%end) then
+            self%kick = self%missed_kick()
+            self%excess = max(self%excess, self%kick/self%tolerance)
+         end if
+         if (hides_an_end(self, trajectory%max_force)) self%excess = huge(1.0_wp)
+         if (.not. self%excess >= 0.0_wp) self%excess = huge(1.0_wp)
+         if (fine%recedes .or. is_refused(self)) return
+         call self%find_peaks()
+         ! the force where it is largest; elsewhere its errors are remainders of transients
+         if (self%peaks%force > trajectory%max_force &
+             .and. self%peaks%time_of_force < self%step%duration) then
+            inherited = abs(fine%start%force - self%coarse%start%force)
+            self%excess = max(self%excess, at_branch*(self%peaks%force_difference - inherited) &
+               /(self%accuracy*self%peaks%force))
+         end if
+      end associate
+   end subroutine judge
+
+   !> Whether the contact may have ended unnoticed within the panel: a plate moves away from the
+   !> sphere and is caught up with, or the force is zero between two stages, as of a sphere that its
+   !> weight almost keeps in contact
+   function hides_an_end(self, max_force) result(hides)
+      !> The course, its panel solved
+      type(course_t), intent(in) :: self
+      !> Largest force so far [N]
+      real(wp), intent(in) :: max_force
+      logical :: hides
+
+      real(wp) :: slope(0:width), theta
+      integer :: j, n
+
+      associate (panel => self%fine%panel, impact => self%fine%impact, rule => self%fine%rule)
+         n = panel%stages
+         hides = impact%outruns(panel%alpha(0), panel%alpha(n), panel%impulse(n), panel%time(n))
+         if (hides) return
+         if (self%ends .or. impact%law%receding) return
+         slope = rule%slopes(panel%force)
+         do j = 1, panel%stages
+            if (.not. (panel%force(j - 1) > 0.0_wp .and. panel%velocity(j - 1) < 0.0_wp &
+                .and. slope(j - 1) < 0.0_wp .and. slope(j) > 0.0_wp)) cycle
+            theta = rule%crossing(slope, j - 1, 1.0e-8_wp)
+            hides = rule%interpolate(panel%force, theta) < -ive_rounding*max_force
+            if (hides) return
+         end do
+      end associate
+   end function hides_an_end
+
+   !> Whether the panel is refused. A difference that a shorter panel did not halve is inherited, or
+   !> rounding
+   pure function is_refused(self)
+      type(course_t), intent(in) :: self
+      logical :: is_refused
+
+      is_refused = .not. (self%excess <= 1.0_wp .or. self%excess <= ive_tolerable &
+         .and. self%excess > 0.5_wp*self%refused .and. self%fine%start%time > 0.0_wp)
+      ! a time of the end that does not improve is as good as rounding and inherited errors allow
+      if (self%ends .and. self%growth <= self%tolerance .and. self%excess < huge(1.0_wp)) &
+         is_refused = is_refused .and. .not. self%excess > 0.5_wp*self%refused_end
+   end function is_refused
+
+   !> Shorten a panel that was refused
+   subroutine shorten(self)
+      type(course_t), intent(inout) :: self
+
+      real(wp) :: order, left, last, duration
+
+      last = self%refused
+      self%refused = self%excess
+      if (self%ends) then
+         self%refused_ends = self%refused_ends + 1
+         self%refused_end = self%excess
+      end if
+      duration = self%step%duration
+      associate (start => self%fine%start)
+         if (self%ends .and. .not. self%fine%recedes) then
+            ! next to s = 0 the error falls as s u(s): other panels lead to the end
+            self%end_found = start%time + duration
+            order = 1.0_wp + self%fine%impact%law%start_exponent
+            left = min(1.0_wp - ive_part, max((1.0_wp - ive_part)**4, self%excess**(-1.0_wp/order)))
+            self%lead = self%end_found - 1.001_wp*left*duration
+            self%length = duration
+            return
+         end if
+         order = real(2*self%fine%rule%stages - 2, wp)
+         ! where modes settle within the panel its order is lower; two refusals tell
+         if (last < huge(last) .and. self%refused_duration > duration) order = max(1.0_wp, &
+            min(order, log(last/self%excess)/log(self%refused_duration/duration)))
+         self%refused_duration = duration
+         duration = duration*max(ive_cut, length_factor(max(1.0_wp, self%excess), order))
+         if (self%ends) then
+            self%end_length = duration
+         else
+            self%length = duration
+         end if
+      end associate
+   end subroutine shorten
+
+   !> Factor from the length of a panel to one with an excess of 1, in steps: rounding in a small
+   !> difference must not move the panels
+   pure function length_factor(excess, order) result(factor)
+      real(wp), intent(in) :: excess
+      !> Power of the length with which the excess grows
+      real(wp), intent(in) :: order
+      real(wp) :: factor
+
+      real(wp), parameter :: steps = 16.0_wp
+
+      factor = aint(steps*ive_safety*min(excess**(-1.0_wp/order), 1.0_wp/epsilon(1.0_wp)))/steps
+   end function length_factor
+
+   !> Halve a panel that cannot be solved
+   subroutine halve(self)
+      type(course_t), intent(inout) :: self
+
+      self%length = 0.5_wp*self%step%duration
+      self%end_length = min(self%end_length, self%length)
+      if (self%fine%start%time < self%lead) self%lead = 0.0_wp
+   end subroutine halve
+
+   !> Whether t1 rises somewhere in the panel: in both solutions, by more than the two differ
+   pure function is_rising(self) result(rises)
+      type(course_t), intent(in) :: self
+      logical :: rises
+
+      real(wp), dimension(0:width) :: slope, other
+      real(wp) :: fine, difference, least
+      integer :: j, points
+
+      associate (rule => self%fine%rule, coarse => self%coarse%rule)
+         slope = rule%slopes(self%fine%panel%t1)
+         other = coarse%slopes(self%coarse%panel%t1)
+         ! at the end of the contact the map is stationary, and so is t1
+         points = coarse%stages - merge(1, 0, self%ends)
+         difference = 0.0_wp
+         least = -huge(1.0_wp)
+         do j = 1, points
+            fine = rule%interpolate(slope, coarse%point(j))
+            difference = max(difference, abs(fine - other(j)))
+            least = max(least, min(fine, other(j)))
+         end do
+         rises = least > difference
+      end associate
+   end function is_rising
+
+   !> Stop where a receding contact grows again
+   subroutine stop_growing(self, trajectory, error)
+      type(course_t), intent(in) :: self
+      type(trajectory_t), intent(inout) :: trajectory
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: over
+
+      if (self%fine%sums%contact%error > self%accuracy) then
+         call raise(error, error_numerical, 'the contact seems to grow again before it has ' &
+            //'ended, which may be the error of the sum of exponentials that stands for the ' &
+            //'material')
+         return
+      end if
+      ! a contact that its weight makes grow again may not separate any more
+      call trajectory%stop_at_rest(self%fine%impact, .true., over)
+      if (over) return
+      if (is_lost(self)) then
+         call raise_no_end(self, error)
+      else
+         call refuse_growth(self%fine%impact, error)
+      end if
+   end subroutine stop_growing
+
+   !> Whether a rebound has no force left: it is 1e-9 of its largest value
+   pure function is_lost(self)
+      type(course_t), intent(in) :: self
+      logical :: is_lost
+
+      is_lost = self%fine%recedes .and. self%fine%start%t1 < 1.0e-6_wp*self%fine%approach%end
+   end function is_lost
+
+   !> Say that the end of the contact is out of reach
+   subroutine raise_no_end(self, error)
+      type(course_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      if (is_lost(self)) then
+         call raise(error, error_numerical, 'the force of this contact creeps to zero so slowly ' &
+            //'that its end is lost in rounding: next to nothing of the velocity comes back')
+      else
+         call raise(error, error_numerical, 'the internal-variable method does not get to the ' &
+            //'end of the contact: the accuracy asked for is out of reach')
+      end if
+   end subroutine raise_no_end
+
+   !> Accept the panel
+   subroutine accept(self, trajectory)
+      type(course_t), intent(inout) :: self
+      type(trajectory_t), intent(inout) :: trajectory
+
+      self%refused = huge(1.0_wp)
+      self%growths = 0
+      self%added = self%added + self%growth
+      self%inner = max(self%inner, self%inner_now)
+      associate (fine => self%fine, panel => self%fine%panel)
+         if (self%ends) then
+            self%last_errors = self%errors(trajectory%steps + 1, trajectory%max_force)
+            call self%end_without_force()
+         end if
+         call self%record(trajectory)
+         if (.not. fine%recedes) call self%record_peaks(trajectory)
+         if (fine%impact%law%receding .and. .not. fine%recedes) call fine%approach%add( &
+            fine%impact%law, fine%rule, fine%sums%contact%rates, panel)
+         call fine%advance()
+         call self%coarse%advance()
+      end associate
+   end subroutine accept
+
+   !> Choose the length of the next panel
+   subroutine go_on(self)
+      type(course_t), intent(inout) :: self
+
+      real(wp) :: finer, factor
+
+      associate (fine => self%fine, time => self%fine%start%time)
+         factor = min(ive_growth, length_factor(max(self%excess, tiny(1.0_wp)), &
+            real(2*fine%rule%stages - 2, wp)))
+         self%length = factor*self%step%duration
+         ! near first contact steps in sqrt(t) grow by this factor
+         if (.not. fine%recedes) then
+            if (self%step%kind == opening) self%length = time*min(3.0_wp, factor*(2.0_wp + factor))
+            if (self%step%kind == doubling) self%length = time*factor*(1.0_wp + 0.25_wp*factor)
+         end if
+         if (self%turns) then
+            call fine%turn()
+            call self%coarse%turn()
+            finer = (self%tolerance/ive_usual)**0.1_wp
+            self%previous%stages = 0
+            self%rate = -1.2_wp
+            self%rest = fine%approach%end
+            self%length = 0.5_wp*finer*fine%approach%end
+            self%end_length = self%length
+            if (is_fast(self)) self%end_length = 0.5_wp*self%length
+         else if (fine%recedes) then
+            call extrapolate(self)
+         end if
+      end associate
+   end subroutine go_on
+
+   !> Extrapolate t1 and the end of the contact by parabolas from the end of the panel. While the
+   !> condition grows, the end is unknown
+   subroutine extrapolate(self)
+      type(course_t), intent(inout) :: self
+
+      real(wp) :: fall, fall_rate
+
+      associate (panel => self%fine%panel, n => self%fine%panel%stages)
+         call end_rates(panel%t1, self%rate, self%bend)
+         ! t1'' decreases along the panel
+         self%bend = 0.6_wp*self%bend
+         call end_rates(panel%condition, fall, fall_rate)
+         fall = -fall
+         self%rest = huge(1.0_wp)
+         if (fall > 0.0_wp) self%rest = 2.0_wp*panel%condition(n)/(fall &
+            + sqrt(max(0.0_wp, fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
+      end associate
+
+   contains
+
+      !> First and second time derivative of a value at the end of the panel
+      subroutine end_rates(value, first, second)
+         !> Values at the points
+         real(wp), intent(in) :: value(0:width)
+         !> First derivative
+         real(wp), intent(out) :: first
+         !> Second derivative
+         real(wp), intent(out) :: second
+
+         associate (panel => self%fine%panel, rule => self%fine%rule)
+            first = panel%slope_at_end(rule, value)
+            second = (panel%slope_at_end(rule, rule%slopes(value)) - 2.0_wp*panel%map(2)*first &
+               /panel%pace(1.0_wp))/panel%pace(1.0_wp)
+         end associate
+      end subroutine end_rates
+   end subroutine extrapolate
+
+end module vcor_solver_ive_march
