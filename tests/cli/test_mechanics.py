@@ -44,7 +44,9 @@ def test_exact_models_of_the_paper(vcor):
     assert len(found) == 12
     assert float(found["body", "receding"][1]) == pytest.approx(0.380905, abs=2e-5)
     assert float(found["half_space", "receding"][1]) > 0.47
-    assert float(found["hereditary", "receding"][0]) == pytest.approx(0.48758244, abs=2e-8)
+    # to all digits that are printed, which are those that the stated error leaves
+    cor = found["hereditary", "receding"][0]
+    assert len(cor) >= len("0.4875824") and round(0.48758244, len(cor) - 2) == float(cor)
     assert float(found["relaxing", "boltzmann"][0]) == pytest.approx(0.43198690, abs=2e-8)
     assert float(found["none", "receding"][2]) == pytest.approx(1.3913613e-3, rel=1e-7)
     assert [line for line in out.splitlines() if line.startswith("* hereditary  receding")]
