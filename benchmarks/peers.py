@@ -262,7 +262,8 @@ def shifts(file):
     with tempfile.TemporaryDirectory() as folder:
         for name, (celsius, shift, _) in found.items():
             table = Path(folder) / f"{name}.csv"
-            np.savetxt(table, np.stack([celsius + 273.15, shift], axis=1), delimiter=",")
+            np.savetxt(table, np.stack([celsius + 273.15, shift], axis=1), delimiter=",",
+                       header="temperature [K],log10_shift_factor [1]", comments="")  # fmt: skip
             keys = f", reference_temperature = {REFERENCE + 273.15}, shift = 'table', "
             keys += f"shift_file = '{table}'"
             case = vcor.Case(CASE.format(master["equilibrium_modulus"], *lists, keys))

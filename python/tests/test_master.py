@@ -205,6 +205,18 @@ def test_laws_are_those_of_the_library(law, values):
         assert np.log10(case.material("m").time_factor()) == pytest.approx(shift, abs=1e-13)
 
 
+def test_shift_factors_fall():
+    """Neighbours that are alike within their scatter make no step up, which no material takes."""
+    at = np.geomspace(1, 1000, 12)
+    curves = [
+        Curve(273.15 + t, True, at, np.array(moduli(at * shift, REFERENCE, True)))
+        for t, shift in ((0, 1.0), (8, 1.02), (16, 0.3), (24, 0.1))
+    ]
+    found = master.of_curves(curves, "data").log_shift
+    assert (np.diff(found) < 0).all()
+    assert found[1] - found[0] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_three_temperatures_fix_the_constants_of_wlf_and_a_fourth_tests_them(tmp_path):
     path = file_of(tmp_path / "raw.csv", [5, 20, 35], noise=0.003)
     found = vcor.master(path, reference_temperature=REFERENCE)

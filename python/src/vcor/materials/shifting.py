@@ -32,6 +32,8 @@ FOLLOWS = 2.0
 AGREE = 3.0
 #: Relative standard error from which on a constant of a law is not determined
 UNDETERMINED = 1 / 3
+#: Least change of ln a_T between temperatures, far below what data tell
+NO_STEP = 1e-6
 #: Reduction of the sum of squares, in variances, from which on moduli follow the temperature
 VERTICAL = 9.0
 
@@ -176,7 +178,9 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
                             options={"xatol": 1e-8})  # fmt: skip
     curvature = (misfit(found.x + h) + misfit(found.x - h) - 2 * found.fun) / h**2
     noise = max(found.fun / dof, 1.0)
-    return Step(float(found.x), float(2 * noise / curvature), float(found.fun), dof)
+    # a material takes only shift factors that fall
+    value = min(float(found.x), -NO_STEP)
+    return Step(value, float(2 * noise / curvature), float(found.fun), dof)
 
 
 def steps_of(curves: Sequence[Curve]) -> tuple[list[Step], bool]:
