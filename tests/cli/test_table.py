@@ -122,6 +122,7 @@ OTHERS = {
     "old line ends": (DATA.replace("\n", "\r"), "control character"),
     "shear": ("omega [rad/s],G [Pa]\n" + DATA, "'omega'"),
     "frequency": ("f [Hz],E [Pa]\n" + DATA, "'f'"),
+    "tab in a name": ("t\tx [s],E [Pa]\n" + DATA, "'t x'"),
     "temperature": ("T [s],E [Pa]\n" + DATA, "'T'"),
     "order": ("E,t\n" + DATA, "'E'"),
     "storage": ("t,E'\n" + DATA, "'E''"),

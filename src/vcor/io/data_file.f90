@@ -244,7 +244,8 @@ contains
       character(len=*), intent(in) :: message
       type(error_t), allocatable, intent(out) :: error
 
-      call raise(error, error_input, plain%name//':'//integer_text(line)//': '//message)
+      call raise(error, error_input, plain%name//':'//integer_text(line)//': ' &
+         //printable(message))
    end subroutine complain
 
    !> Check names, units and numbers of a relaxation modulus; the points become SI units
