@@ -228,9 +228,9 @@ contains
    end subroutine test_maxwell_slope
 
    !> A spring and a dashpot side by side, F = k (u + A u'), on a half space: the restitution
-   !> depends on b = (3/2) A/T alone (T. Schwager, T. Poeschel, Phys. Rev. E 78 (2008) 051304). Against
-   !> solutions in 50 digits (tests/reference/make_kelvin_voigt.py), against the series for weak
-   !> dashpots, and against the Pade approximant of P. Mueller and T. Poeschel (Phys. Rev. E 84
+   !> depends on b = (3/2) A/T alone (T. Schwager, T. Poeschel, Phys. Rev. E 78 (2008) 051304). With
+   !> solutions in 50 digits (tests/reference/make_kelvin_voigt.py), the series for weak
+   !> dashpots, and the Pade approximant of P. Mueller and T. Poeschel (Phys. Rev. E 84
    !> (2011) 021302), whose own errors are known
    subroutine test_kelvin_voigt()
       real(wp), parameter :: b(3) = [0.1_wp, 1.0_wp, 10.0_wp]
@@ -333,7 +333,7 @@ contains
 
    !> With exponent 1/2 the Mittag-Leffler function is CERF's exp(b^2 t) erfc(b sqrt(t)), with
    !> exponent 1 it is exp(-t/tau), the standard linear solid. The models of each pair have
-   !> different code. An exponent next to 1 is used, which changes cor by less than its distance from 1
+   !> different code. An exponent next to 1 changes cor by less than its distance from 1
    subroutine test_mittag_leffler()
       real(wp), parameter :: beta = 700.0_wp, next_to_one = 1.0_wp - 1.0e-12_wp
       type(mittag_leffler_t) :: material

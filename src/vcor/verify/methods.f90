@@ -28,11 +28,11 @@ module vcor_verify_methods
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: judge_ends, judge_numbers, is_honest, error_of_best
 
-   !> Largest ratio of the true error to the stated one: over the cases of tests/reference with these
+   !> Largest ratio of the true error to the stated one: for the cases of tests/reference with these
    !> steps the ratio is below 3 wherever the error is above `rounding`
    real(wp), parameter :: honest_factor = 3.0_wp
-   !> Accuracy of the energy budget and of quantities other than cor divided by that of cor: the steps are
-   !> chosen for cor, and the errors of the others are of the same order
+   !> Ratio of the accuracy of the energy budget, and of quantities other than cor, to that of cor:
+   !> the steps are chosen for cor, and the errors of the others are of the same order
    real(wp), parameter :: other_quantities = 10.0_wp
    !> Relative error of any number by rounding and by the error of the reference itself
    real(wp), parameter :: rounding = 1.0e-10_wp
