@@ -80,8 +80,9 @@ module vcor_solver_ive_course
       real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
       !> Rebound: t1' [-] and t1'' [1/s], for a guess
       real(wp) :: rate = 0.0_wp, bend = 0.0_wp
-      !> Rebound: number of panels in a row in which t1 seems to rise
+      !> Rebound: number of panels in which t1 seems to rise, and the end of the first one [s]
       integer :: growths = 0
+      real(wp) :: growth_end = 0.0_wp
    contains
       procedure :: begin
       procedure :: record

@@ -85,6 +85,8 @@ contains
          end if
          if (course%fine%recedes) then
             if (is_rising(course)) then
+               if (course%growths == 0) &
+                  course%growth_end = course%fine%start%time + course%step%duration
                course%growths = course%growths + 1
                if (course%growths > most_halvings) then
                   call stop_growing(course, trajectory, error)
@@ -556,7 +558,6 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
 
       self%refused = huge(1.0_wp)
-      self%growths = 0
       self%added = self%added + self%growth
       self%inner = max(self%inner, self%inner_now)
       associate (fine => self%fine, panel => self%fine%panel)
@@ -570,6 +571,8 @@ contains
             fine%impact%law, fine%rule, fine%sums%contact%rates, panel)
          call fine%advance()
          call self%coarse%advance()
+         ! panels that creep to the place where the contact grows have not passed it
+         if (fine%start%time >= self%growth_end) self%growths = 0
       end associate
    end subroutine accept
 
