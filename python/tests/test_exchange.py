@@ -14,7 +14,7 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor.exchange import codes
+from vcor.exchange import codes, export
 from vcor.exchange.contact_laws import HERTZ, LINEAR, VISCOELASTIC
 
 VELOCITIES = np.geomspace(0.05, 5, 5)
@@ -302,16 +302,16 @@ def test_laws_that_are_not_there():
 
 def test_command(tmp_path, capsys):
     words = [str(BEADS), "--for", "rebound", "--velocities", "0.1:1:4"]
-    codes.main(words)
+    export.main(words)
     said = capsys.readouterr().out
     assert "def restitution(" in said
-    codes.main([*words, "--output", str(tmp_path)])
+    export.main([*words, "--output", str(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == {
         f"granular_pair_rebound.{end}" for end in ("py", "c", "svg")
     }
     assert (tmp_path / "granular_pair_rebound.py").read_text() == said
     assert "written" in capsys.readouterr().out
-    codes.main([*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"])
+    export.main([*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"])
     assert (tmp_path / "granular_pair_master.csv").exists()
 
 
@@ -322,7 +322,7 @@ def test_command(tmp_path, capsys):
         (["--velocities", "1:2"], 2, "expected such as 0.05:5:20"),
         (["--velocities", "2:1:5"], 2, "expected such as 0.05:5:20"),
         (["--velocities", "1:inf:5"], 2, "expected such as 0.05:5:20"),
-        (["--for", "lammps", "--master"], 2, "--master is a table"),
+        (["--for", "lammps", "--master"], 2, "a master curve is a table"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
@@ -330,7 +330,7 @@ def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
     given |= dict(zip(words[::2], words[1::2], strict=False))
     flags = [word for word in words if word == "--master"]
     with pytest.raises(SystemExit) as caught:
-        codes.main([str(BEADS), *[x for pair in given.items() for x in pair], *flags])
+        export.main([str(BEADS), *[x for pair in given.items() for x in pair], *flags])
     error = capsys.readouterr().err
     assert (caught.value.code, error.count("\n")) == (code, 1)
     assert said in error
@@ -391,3 +391,173 @@ def test_contacts_that_a_program_has_not():
     short = vcor.pair(RUBBER, (0.005,), solver={"end_time": 1e-5})
     with pytest.raises(vcor.NumericalError, match="3 of 3 velocities have no result"):
         vcor.export(short, "lammps", [1.0, 2.0])
+
+
+GLASS = {"name": "glass", "model": "elastic", "modulus": 7e10, "density": 2500.0,
+         "poisson_ratio": 0.2}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def cases():
+    """Two materials, three sizes and a wall: nine pairs."""
+    beads = [(RUBBER, 0.003), (RUBBER, 0.005), (ACETATE, 0.004)]
+    return vcor.mixture(beads, [GLASS], contact={"mechanics": "exact"})
+
+
+def test_a_mixture_has_every_pair(cases):
+    assert len(cases) == 9
+    alone = vcor.pair([RUBBER, ACETATE], (0.005, 0.004), contact={"mechanics": "exact"})
+    assert any(case.solve()["cor"] == alone.solve()["cor"] for case in cases)
+    found = vcor.export(cases, "lammps", VELOCITIES)
+    assert [str(body) for body in found.bodies] == [
+        "rubber, radius 0.003 m", "rubber, radius 0.005 m", "cellulose acetate, radius 0.004 m",
+        "wall of glass",
+    ]  # fmt: skip
+    assert list(found.pairs) == [(i, j) for i in (1, 2, 3) for j in range(i, 5)]
+    text = str(found)
+    for (i, j), curve in found.pairs.items():
+        one = vcor.export(cases[list(found.pairs).index((i, j))], "lammps", VELOCITIES)
+        # one of its laws: two of them may have the same e
+        places = [f"pair_coeff  {i} {j} {law}" if j < 4 else f"type{i} wall/gran granular {law}"
+                  for law, twin in one.options.items()
+                  if np.allclose(twin.cor[::2], curve.e_law, atol=1e-12)]  # fmt: skip
+        assert any(f"{place} tangential" in text for place in places)
+        assert found.misfit >= float(np.abs(curve.e_law - curve.e_sphere).max()) - 1e-12
+
+
+def order_of(cases, found):
+    """Numbers of the pair of each case."""
+    bodies = [str(body) for body in found.bodies]
+    for case in cases:
+        second = case["plate.surface_radius"]
+        ends = [f"{case['sphere.material']}, radius {case['sphere.radius']:g} m",
+                f"{case['plate.material']}, radius {second:g} m" if second
+                else f"wall of {case['plate.material']}"]  # fmt: skip
+        yield tuple(sorted(bodies.index(end) + 1 for end in ends))
+
+
+def test_a_matrix_is_full_and_symmetric(cases):
+    """LIGGGHTS and YADE take e of each pair, and moduli of types that fit all pairs."""
+    found = vcor.export(cases, "liggghts", VELOCITIES, law=2)
+    text = str(found).replace("&\n", "")
+    n, *words = re.search(r"coefficientRestitution peratomtypepair (.*)", text)[1].split()
+    matrix = np.array(words, dtype=float).reshape(int(n), int(n))
+    assert (matrix == matrix.T).all() and int(n) == 4
+    young, poisson = (
+        np.array(re.search(rf"{key} peratomtype (.*)", text)[1].split(), dtype=float)
+        for key in ("youngsModulus", "poissonsRatio")
+    )
+    assert poisson == pytest.approx([0.48, 0.48, 0.28, 0.2])
+    radii = [body.radius for body in found.bodies]
+    clips = "limitForce on" in text
+    for case, (i, j) in zip(cases, order_of(cases, found), strict=True):
+        curve = found.pairs[i, j]
+        law = clipped(HERTZ) if clips else HERTZ
+        # the law with what is written has e and the contact time that the header promises
+        e = matrix[i - 1, j - 1]
+        damping = law.critical * -math.log(e) / math.hypot(math.pi, math.log(e))
+        compliance = sum((1 - poisson[k - 1] ** 2) / young[k - 1] for k in (i, j))
+        radius = 1 / (1 / radii[i - 1] + 1 / radii[j - 1])
+        stiffness = 4 / 3 * math.sqrt(radius) / compliance
+        restitution, time = law.bounce(damping)
+        mass = case["sphere.mass"]
+        time *= (mass**2 / stiffness**2 / VELOCITIES) ** 0.2
+        assert restitution == pytest.approx(float(curve.e_law[0]), abs=1e-6)
+        assert time == pytest.approx(curve.contact_time_law.values, rel=1e-5)
+    matches = re.search(r"matches=\((.*),\)\)", str(vcor.export(cases, "yade", VELOCITIES)))[1]
+    assert len(re.findall(r"\((\d), (\d), 0\.\d+\)", matches)) == 9
+
+
+def test_a_table_of_a_mixture(cases):
+    found = vcor.export(cases, "table", VELOCITIES)
+    rows = [line for line in str(found).splitlines() if not line.startswith("#")]
+    assert rows[0] == "a,b,v,e,e_sphere,t_c,F_max" and len(rows) == 1 + 9 * len(VELOCITIES)
+    for case, at in zip(cases, order_of(cases, found), strict=True):
+        own = [row.split(",")[2:] for row in rows[1:] if row.startswith("{},{},".format(*at))]
+        wanted = case.points({"impact.velocity": VELOCITIES}, ["cor", "contact_time"])
+        numbers = np.array(own, dtype=float)
+        assert np.allclose(numbers[:, [1, 3]].T, wanted.to_array().values, rtol=1e-12)
+
+
+def test_other_programs_of_mixtures(cases):
+    text = str(vcor.export(cases, "mercurydpm", VELOCITIES))
+    assert len(re.findall(r"getMixedObject\(type\d, type\d\)\)->set", text)) == 6
+    assert "copyAndAddObject(species);" in text and "auto type4" in text
+    text = str(vcor.export(cases, "mfix", VELOCITIES))
+    assert re.findall(r"des_en_input\((\d)\) = \S+  ! (\d-\d)", text) == [
+        ("1", "1-1"), ("2", "1-2"), ("3", "1-3"), ("4", "2-2"), ("5", "2-3"), ("6", "3-3"),
+    ]  # fmt: skip
+    assert text.count("des_en_wall_input") == 3
+    for name, reason in (("rebound", "not which bodies meet"), ("mujoco", "not for types"),
+                         ("chrono", "by a mean")):  # fmt: skip
+        with pytest.raises(vcor.UsageError, match=f"{reason}.*expected one of table, lammps"):
+            vcor.export(cases, name, VELOCITIES)
+    assert "@" not in text
+
+
+def test_mixtures_that_are_refused(cases):
+    with pytest.raises(vcor.InputError, match="no case of 'rubber, radius 0.005 m' with 'wall of"):
+        vcor.export(cases[:6] + cases[7:], "lammps", VELOCITIES)
+    with pytest.raises(vcor.InputError, match="pair_1-3: .*use contact.pair = 'series'"):
+        vcor.export(vcor.mixture([(RUBBER, 1e-3), (RUBBER, 2e-3), (ACETATE, 1e-3)]), "table",
+                    VELOCITIES)  # fmt: skip
+    with pytest.raises(vcor.InputError, match="expected each pair once"):
+        vcor.export([*cases, cases[1]], "lammps", VELOCITIES)
+    heavy = cases[1].copy()
+    heavy["sphere.mass"] = 1e-3
+    with pytest.raises(vcor.InputError, match="found sphere.mass = 0.001 kg, expected .* reduced"):
+        vcor.export([heavy, *cases[:1], *cases[2:]], "table", VELOCITIES)
+    stiff = cases[-1].copy()
+    stiff["glass.modulus"] = 8e10
+    with pytest.raises(vcor.InputError, match="another material 'glass' than in pair_1-4"):
+        vcor.export([*cases[:-1], stiff], "table", VELOCITIES)
+    falling = cases[-1].copy()
+    falling["impact.gravity"] = 9.81
+    with pytest.raises(vcor.InputError, match="found impact.gravity = 9.81, and 0.0 in pair_1-1"):
+        vcor.export([*cases[:-1], falling], "table", VELOCITIES)
+    with pytest.raises(vcor.UsageError, match="one pair of materials"):
+        vcor.export(cases, "table", VELOCITIES, master=True)
+    for beads in ([], [RUBBER], [(RUBBER, "large")], 3):
+        with pytest.raises(vcor.InputError, match="expected"):
+            vcor.mixture(beads)
+
+
+def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
+    """Files of materials complete all cases before them, as those of vcor run."""
+    monkeypatch.chdir(tmp_path)
+    pairs = [vcor.pair([RUBBER, GLASS], (0.003,)), vcor.pair(RUBBER, (0.003, 0.003))]
+    groups = [re.search(rf"(?ms)^&material\n   name = '{name}'.*?^/\n", pairs[0].text())[0]
+              for name in ("rubber", "glass")]  # fmt: skip
+    for name, case in zip(("wall.nml", "beads.nml"), pairs, strict=True):
+        Path(name).write_text(case.text().partition("&material")[0])
+    Path("rubber.nml").write_text(groups[0])
+    Path("glass.nml").write_text(groups[1])
+    tail = ["--for", "lammps", "--velocities", "0.1:1:3"]
+    export.main(["wall.nml", "rubber.nml", "glass.nml", *tail])
+    assert str(vcor.export(pairs[0], "lammps", np.geomspace(0.1, 1, 3))).partition("case:")[0] in (
+        capsys.readouterr().out
+    )
+    export.main(["wall.nml", "beads.nml", "rubber.nml", "glass.nml", *tail, "--output", "out"])
+    assert {path.name for path in Path("out").iterdir()} == {"wall_lammps.in", "wall_lammps.svg"}
+    assert "pair_coeff  1 1" in Path("out/wall_lammps.in").read_text()
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as caught:
+        export.main(["glass.nml", "wall.nml", *tail])
+    assert caught.value.code == 2
+    assert "glass.nml: a file with nothing but &material groups" in capsys.readouterr().err
+
+
+@other_programs
+def test_lammps_does_what_a_mixture_says(lammps, cases, tmp_path):
+    found = vcor.export(cases, "lammps", VELOCITIES)
+    (tmp_path / "in").write_text(str(found))
+    for (i, j), curve in found.pairs.items():
+        for v, e, time in zip(VELOCITIES, curve.e_law, curve.contact_time_law, strict=True):
+            words = ["-screen", "none", "-log", "none"]
+            for name, value in (("a", i), ("b", j), ("v", v)):
+                words += ["-var", name, str(value)]
+            engine = lammps(cmdargs=words)
+            engine.file(str(tmp_path / "in"))
+            assert engine.extract_variable("leaving") / v == pytest.approx(float(e), abs=1e-3)
+            assert engine.extract_variable("time") == pytest.approx(float(time), rel=0.01)
+            engine.close()

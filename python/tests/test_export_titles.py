@@ -56,7 +56,7 @@ def curve():
     """Results that all exports of this page are made of."""
     case = vcor.read(PAPER / "sls.nml")
     case["plate.waves"] = "none"
-    return codes._solved(case, VELOCITIES, "cor_sphere", 1)
+    return codes.solved(case, VELOCITIES, "cor_sphere", 1)
 
 
 @pytest.mark.parametrize("target", list(codes.TARGETS))
@@ -66,7 +66,7 @@ def test_a_title_is_a_comment(tmp_path, curve, target, title, name):
     case = vcor.read(PAPER / "sls.nml")
     case["plate.waves"] = "none"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(codes, "_solved", lambda *_: curve)
+        patch.setattr(codes, "solved", lambda *_: curve)
         plain = vcor.export(case, target, VELOCITIES)
         text = case.text().replace("'rubber'", vcor.case._written(name, ""))
         try:

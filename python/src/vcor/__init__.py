@@ -19,7 +19,9 @@ from .case import Case, Material, read
 
 if TYPE_CHECKING:
     from .exchange.cards import card, read_card
-    from .exchange.codes import export, pair
+    from .exchange.codes import pair
+    from .exchange.export import export
+    from .exchange.mixture import mixture
     from .materials.data import read_data
     from .materials.fit import Fit, fit
     from .materials.identification import identify
@@ -45,6 +47,7 @@ __all__ = [
     "fit",
     "identify",
     "master",
+    "mixture",
     "open",
     "pair",
     "propagate",
@@ -63,10 +66,11 @@ _LATER = {
     "Fit": "materials.fit",
     "bands": "uncertainty_sweep",
     "card": "exchange.cards",
-    "export": "exchange.codes",
+    "export": "exchange.export",
     "fit": "materials.fit",
     "identify": "materials.identification",
     "master": "materials.master",
+    "mixture": "exchange.mixture",
     "open": "results",
     "pair": "exchange.codes",
     "propagate": "uncertainty",

@@ -127,7 +127,7 @@ def _run(name: str) -> None:
 #: Module of each command, with its `main` and `_parser`
 MODULES = {
     "card": "exchange.cards",
-    "export": "exchange.codes",
+    "export": "exchange.export",
     "fit": "materials.fit_command",
     "identify": "materials.identification",
     "master": "materials.master",

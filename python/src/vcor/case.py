@@ -79,6 +79,22 @@ def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Ca
     return case
 
 
+def read_cases(paths: Sequence[str | os.PathLike[str]]) -> list[Case]:
+    """Cases of files, completed by the files of materials after them, as `vcor run` has it."""
+    cases: list[Case] = []
+    for path in paths:
+        one = _from_file(path)
+        if any(one[f"{body}.material"] for body in ("sphere", "plate")):
+            cases.append(one)
+            continue
+        if not cases:
+            raise UsageError(f"{os.fspath(path)}: a file with nothing but &material groups "
+                             "completes the cases before it, expected a case first")  # fmt: skip
+        for case in cases:
+            case.add(one)
+    return cases
+
+
 def _from_file(path: str | os.PathLike[str]) -> Case:
     """The case of a file."""
     case = Case.__new__(Case)

@@ -130,7 +130,7 @@ def bands(
         )
     nothing = xr.full_like(good.table, np.nan)
     along = xr.concat([one.table if one else nothing for one in points], address)
-    columns: dict[str, Any] = {}
+    columns: dict[str, tuple[NDArray[Any], dict[str, str]]] = {}
     for name in good.quantities:
         columns |= _columns(name, along.sel(quantity=name))
     for name in ("validity", "validity_cause"):

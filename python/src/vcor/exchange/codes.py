@@ -1,17 +1,15 @@
 """e(v) for other programs: input for discrete elements and physics engines, and what it costs.
 
-`export` solves a case at velocities and fits the contact law of a program to e and contact times.
-A program is an entry of templates/programs.toml and the templates of its files.
+`export_pair` solves a case at velocities and fits the contact law of a program to e and contact
+times. A program is an entry of templates/programs.toml and the templates of its files.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import math
 import os
 import re
-import sys
 import tomllib
 import warnings
 from collections.abc import Mapping, Sequence
@@ -25,7 +23,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from .. import _command, _library, _text
+from .. import _library, _text
 from .._library import (
     Floats,
     InputError,
@@ -66,8 +64,13 @@ class Target:
     laws: Sequence[Mapping[str, Any]] = ()
     notes: Sequence[str] = ()
     run: str = ""
+    #: How it takes pairs of several types: the law of each ("pairs"), its e with a modulus of each
+    #: type ("types"), a table of all ("table"); else why it does not
+    mixture: str = ""
 
 
+#: What is written for a law, its parameters, and numbers for the templates
+Fit = tuple[str, Twin, dict[str, str]]
 _PROGRAMS = tomllib.loads(_text.read_text(TEMPLATES / "programs.toml"))
 TARGETS = {name: Target(name, **keys) for name, keys in _PROGRAMS.items()}
 
@@ -139,6 +142,18 @@ def pair(
         The case, without waves.
     """
     both = [materials] * 2 if isinstance(materials, Mapping) else list(materials)
+    return pair_of(both, radii, velocity, masses, groups, "pair.nml")
+
+
+def pair_of(
+    both: Sequence[Mapping[str, Any]],
+    radii: ArrayLike,
+    velocity: float,
+    masses: Sequence[float] | None,
+    groups: Mapping[str, Any],
+    title: str,
+) -> Case:
+    """A pair as `pair` makes it, with a name for messages."""
     try:
         first, second = np.append(np.asarray(radii, dtype=float), math.inf)[:2]
         beads = [(r, one) for r, one in zip((first, second), both, strict=True) if r < math.inf]
@@ -174,10 +189,22 @@ def pair(
         given[name] = (
             {**given[name], **keys} if name in given and isinstance(keys, Mapping) else keys
         )
-    return Case({**given, "material": list(known.values())}, name="pair.nml")
+    return Case({**given, "material": list(known.values())}, name=title)
 
 
-def export(
+def checked(target: str, velocities: ArrayLike, quantity: str) -> Floats:
+    """The velocities; refused with what there is not."""
+    given = numbers(velocities, "velocities")
+    if target not in list(TARGETS):
+        raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}")
+    if quantity not in MEANING:
+        raise UsageError(f"unknown quantity '{quantity}', known: {', '.join(MEANING)}")
+    if given.size < 2 or not (np.diff(given, prepend=0) > 0).all():
+        raise UsageError("expected two or more velocities > 0 that rise")
+    return given
+
+
+def export_pair(
     case: Case | str | os.PathLike[str],
     target: str,
     velocities: ArrayLike,
@@ -213,15 +240,8 @@ def export(
     NumericalError
         An impact has no result.
     """
-    case = as_case(case)
-    given = numbers(velocities, "velocities")
-    if target not in list(TARGETS):
-        raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}")
-    if quantity not in MEANING:
-        raise UsageError(f"unknown quantity '{quantity}', known: {', '.join(MEANING)}")
-    if given.size < 2 or not (np.diff(given, prepend=0) > 0).all():
-        raise UsageError("expected two or more velocities > 0 that rise")
-    curve = _solved(case, given, quantity, threads)
+    case, given = as_case(case), checked(target, velocities, quantity)
+    curve = solved(case, given, quantity, threads)
     if master:
         return _master(case, target, curve)
     chosen = TARGETS[target]
@@ -230,7 +250,7 @@ def export(
     return _fitted(case, chosen, curve, law)
 
 
-def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.Dataset:
+def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.Dataset:
     """Results at the velocities and between them, every second one."""
     velocity = np.empty(2 * len(given) - 1)
     velocity[::2], velocity[1::2] = given, np.sqrt(given[1:] * given[:-1])
@@ -267,7 +287,7 @@ def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr
     )
     first = found.isel(point=0)
     table.attrs["mass"] = float(2 * first.initial_energy / velocity[0] ** 2)
-    radius, other = _radii(case)
+    radius, other = radii_of(case)
     table.attrs["radius"] = radius / (1 + radius / other) if other else radius
     judged, cause = found.validity.values, found.validity_cause.values
     parts = [f"good at {(judged == 'good').sum()} of {len(velocity)} velocities"]
@@ -300,7 +320,7 @@ def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
         body = f"shape {case['sphere.shape']}"
     if case["sphere.shape"] == "true_sphere":
         body += ", true sphere"
-    if base := _base(case):
+    if base := base_of(case):
         thickness = number(case, "plate.thickness", 2 * number(case, "plate.half_thickness", 0.0))
         body += f", layer of {thickness:.6g} m, {base} on a rigid floor"
     return [
@@ -331,7 +351,7 @@ def _finished(
     if target.laws:
         run = f"was run in {target.run}" if target.run else "was not run"
         lines.append(f"input of this kind {run}")
-    radius, other = _radii(case)
+    radius, other = radii_of(case)
     mass = curve.attrs["mass"] * (2 if other else 1)
     middle = float(np.sqrt(curve.velocity.values[0] * curve.velocity.values[-1]))
     known = {
@@ -343,16 +363,16 @@ def _finished(
     }  # fmt: skip
     texts = {}
     for ending in target.files:
-        said = [_comment(line, ending) for line in lines]
+        said = [comment(line, ending) for line in lines]
         template = (TEMPLATES / f"{target.name}{ending}.txt").read_text(encoding="utf-8")
         kept = [line.removeprefix(kind) for line in template.splitlines()
                 if not line.startswith(other_kind)]  # fmt: skip
-        text = _Template("\n".join(kept) + "\n")
+        text = FileTemplate("\n".join(kept) + "\n")
         texts[ending] = text.substitute(known, **values, header="\n".join(said))
     return Export(target.name, curve, texts, lines, misfit, options or {})
 
 
-def _comment(line: str, ending: str) -> str:
+def comment(line: str, ending: str) -> str:
     """A line of a comment that ends with it, whatever stands in it."""
     line = COMMENTS.get(ending, "# ") + _library.printable(line).rstrip()
     # a comment of XML has no --; elsewhere the next line would belong to this one
@@ -360,12 +380,12 @@ def _comment(line: str, ending: str) -> str:
     return line + "." if line.endswith(("\\", "??/", "&")) else line
 
 
-def _radii(case: Case) -> tuple[float, float]:
+def radii_of(case: Case) -> tuple[float, float]:
     """Radii of the sphere and of the other body [m], 0 for a wall."""
     return radius_of(case, 0.0), number(case, "plate.surface_radius", 0.0)
 
 
-def _base(case: Case) -> str:
+def base_of(case: Case) -> str:
     """How a layer lies on a floor; empty for a plate or a half space."""
     base = str(case["plate.base"] or "free")
     return "" if base == "free" else base
@@ -375,7 +395,7 @@ def _density(mass: float, radius: float) -> float:
     return mass / (4 / 3 * math.pi * radius**3) if radius else 0.0
 
 
-class _Template(Template):
+class FileTemplate(Template):
     """A file with names such as @mass in it."""
 
     delimiter = "@"
@@ -392,7 +412,7 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
     nodes = [f"{x:.17g}" for x in v]
     coefficients = [[f"{c:.17g}" for c in row] for row in spline.c.T[:, ::-1]]
     values = {
-        "rows": _rows(v, *(shown[name].values for name in columns)),
+        "rows": rows_of(v, *(shown[name].values for name in columns)),
         "nodes": "(" + ", ".join(nodes) + ")",
         "coefficients": "(\n" + "".join(f"    ({', '.join(c)}),\n" for c in coefficients) + ")",
         "c_nodes": "{" + ", ".join(nodes) + "}",
@@ -405,24 +425,34 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
     return _finished(case, target, shown, lines, values, misfit)
 
 
-def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
-    """A program with laws of its own, in the order of their misfits."""
-    if case["sphere.shape"] not in SPHERES or _radii(case)[1] < 0:
+def refuse_shapes(case: Case, target: Target) -> None:
+    """Refuse contacts that programs with laws of their own do not have."""
+    if case["sphere.shape"] not in SPHERES or radii_of(case)[1] < 0:
         raise InputError(f"{case.name}: {target.name} has contacts of spheres and flat walls only, "
-                         "expected --for table or rebound")  # fmt: skip
+                         "expected table or rebound in its place")  # fmt: skip
+
+
+def fits(case: Case, target: Target, curve: xr.Dataset) -> list[Fit | None]:
+    """Text, parameters and numbers of each law of a program; None for those that it cannot take."""
     velocity, time = curve.velocity.values, curve.contact_time.values
-    e = curve[curve.attrs["e"]].values
-    found = []
+    found: list[Fit | None] = []
     for entry in target.laws:
         form = replace(LAWS[entry["law"]], clipped=entry.get("clipped", False))
-        twin = form.fit(velocity, e, time, curve.attrs["mass"])
+        twin = form.fit(velocity, curve[curve.attrs["e"]].values, time, curve.attrs["mass"])
         numbers = _numbers(case, curve, twin)
         filled = {key: one.format(**numbers) for key, one in entry.items() if key != "clipped"}
         # a program that takes e has no damping beyond the critical one
-        if "nan" not in filled["text"]:
-            found.append((filled["text"], twin, numbers | filled))
+        beyond = "nan" in filled["text"]
+        found.append(None if beyond else (filled["text"], twin, numbers | filled))
+    return found
+
+
+def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
+    """A program with laws of its own, in the order of their misfits."""
+    refuse_shapes(case, target)
+    found = [fit for fit in fits(case, target, curve) if fit]
     found.sort(key=lambda one: (round(one[1].misfit, 6), one[1].time_misfit))
-    text, twin, filled = found[whole(law, "--law", 1, len(found)) - 1]
+    text, twin, filled = found[whole(law, "law", 1, len(found)) - 1]
     columns = {"e_law": twin.cor, "contact_time_law": twin.time}
     shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})
     shown = shown.isel(velocity=slice(None, None, 2))
@@ -447,7 +477,7 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
         "law": text,
         "step": f"{step:.6g}",
         "duration": f"{RUNS * twin.time.max():.6g}",
-        "size": f"{8 * max(_radii(case)):g}",
+        "size": f"{8 * max(radii_of(case)):g}",
     }
     options = {text: twin for text, twin, _ in found}
     return _finished(case, target, shown, lines, values, twin.misfit, options)
@@ -492,7 +522,7 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
     reasons = {
         "waves in the plate": case["plate.waves"] not in (None, "none"),
         "gravity": bool(case["impact.gravity"]),
-        "a layer on a base": bool(_base(case)),
+        "a layer on a base": bool(base_of(case)),
         "a body that is not a sphere": case["sphere.shape"] not in SPHERES,
         "a sphere that is not a paraboloid": case["sphere.shape"] == "true_sphere",
         "the second Volterra term": case["solver.volterra_order"] == 2,
@@ -501,7 +531,7 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
         if holds:
             raise InputError(f"{case.name}: a master curve of e does not exist with {reason}")
     if target != "table":
-        raise UsageError(f"--master is a table, found --for {target}")
+        raise UsageError(f"a master curve is a table, found {target}")
     shown = curve.isel(velocity=slice(None, None, 2))
     mass, radius = curve.attrs["mass"], curve.attrs["radius"]
     x = (mass / np.sqrt(radius * shown.velocity.values)) ** 0.4
@@ -514,62 +544,11 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
         "these materials: e and t_c/x depend on x alone",
         f"x [{attrs['units']}], e [1], t_c/x [s per unit of x]",
     ]
-    rows = _rows(shown.x.values, shown[curve.attrs["e"]].values, ratio)
-    head = "".join(_comment(line, ".csv") + "\n" for line in lines)
+    rows = rows_of(shown.x.values, shown[curve.attrs["e"]].values, ratio)
+    head = "".join(comment(line, ".csv") + "\n" for line in lines)
     return Export("master", shown, {".csv": f"{head}x,e,t_c/x\n{rows}\n"}, lines, 0.0, {})
 
 
-def _rows(*columns: Floats) -> str:
+def rows_of(*columns: Floats) -> str:
+    """Columns as rows of CSV."""
     return "\n".join(",".join(f"{x:.17g}" for x in row) for row in zip(*columns, strict=True))
-
-
-def _parser() -> _command.Parser:
-    """Options of `vcor export`."""
-    parser = _command.Parser(
-        "export",
-        description="Input for other programs from e(v) of a case: the law that they have, fitted "
-        "to e and contact times, with its misfit. Prints it; with --output, writes it and a "
-        "figure.",
-    )
-    add = parser.add_argument
-    add("case", metavar="CASE.nml", help="case of a pair of bodies")
-    add("--for", metavar="PROGRAM", dest="target", required=True,
-        help=f"one of {', '.join(TARGETS)}")  # fmt: skip
-    add("--velocities", metavar="A:B:N", required=True,
-        help="N velocities from A to B [m/s], in equal ratios")  # fmt: skip
-    add("--quantity", choices=tuple(MEANING), default="cor_sphere",
-        help="what e is; default: cor_sphere")  # fmt: skip
-    add("--master", action="store_true",
-        help="table of e over (m/sqrt(R v))^(2/5), for all sizes of a pair")  # fmt: skip
-    add("--law", metavar="N", type=int, default=1, help="law of the header; default: the best, 1")
-    add("--threads", metavar="N", type=int, help="threads; default: one per core")
-    parser.add_outputs()
-    parser.set_defaults(output=None)
-    return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor export`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
-
-
-def _work(options: argparse.Namespace) -> None:
-    try:
-        low, high, count = options.velocities.split(":")
-        if not (0 < float(low) < float(high) < math.inf and 2 <= int(count) <= 10000):
-            raise ValueError
-        velocities = np.geomspace(float(low), float(high), int(count))
-    except ValueError:
-        raise UsageError(
-            f"--velocities {options.velocities}: expected such as 0.05:5:20, from small to large"
-        ) from None
-    found = export(options.case, options.target, velocities, quantity=options.quantity,
-                   master=options.master, law=options.law, threads=options.threads)  # fmt: skip
-    if options.output is None:
-        sys.stdout.write(str(found))
-        return
-    stem = f"{Path(options.case).stem}_{found.target}"
-    from .._outputs import finish
-
-    finish(options, "\n".join(found.header), stem, found.texts, found.figure())
