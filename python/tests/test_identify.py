@@ -636,3 +636,52 @@ def test_another_minimum_on_the_line_is_no_end():
     fit = Fit(Valley(), np.zeros(2), 0.0, np.array([[1.0, 0.0], [-5.0, 1.0]]), 0.0)
     for one, width in zip(fit.intervals(0), (1.0, 1.96), strict=True):
         assert one.high == pytest.approx(width, rel=0.01) == -one.low
+
+
+def test_temperatures_and_sources_are_told_apart():
+    """In the table, the figure and the document; and the loss tangent is a result."""
+    examples = ROOT / "examples" / "identification"
+    case = vcor.read(examples / "block.nml")
+    rows = read_data(examples / "block.csv")
+    cold = {"velocity": [2.0, 4.0], "temperature": [293.15, 293.15], "cor": [0.98, 0.982],
+            "cor_sigma": [0.01, 0.01]}  # fmt: skip
+    found = vcor.identify(case, [examples / "block.csv", cold], ["rubber.time"])
+    kelvins = [datum["temperature"] for datum in found.data]
+    assert kelvins == [*np.tile(rows.temperature, 2), 293.15, 293.15]
+    (line,) = [line for line in str(found).splitlines() if line.startswith("datum")]
+    assert line.split() == ["datum", "source", "at", "T", "[K]", "value", "model", "residual/error"]
+    assert re.search(r"(?m)^cor +data +4 +293.15 +0.982 ", str(found))
+    # a curve of the model for each source and temperature, in its own colour
+    figure = found.figure()
+    above = figure.axes[0]
+    lines = [line for line in above.lines if len(line.get_xdata()) > 1 and line.get_marker() == ""]
+    assert sorted(len(line.get_xdata()) for line in lines) == [2, 3, 3, 3]
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert sorted(texts) == ["block, 20 °C", "block, 40 °C", "block, 60 °C", "data, 20 °C"]
+    # at the median velocity of each temperature, as the impact itself has it
+    assert [one.temperature for one in found.loss_tangents] == [293.15, 313.15, 333.15]
+    for one, document in zip(found.loss_tangents, found.as_dict()["loss_tangents"], strict=True):
+        impact = {"impact.velocity": one.velocity, "impact.temperature": one.temperature}
+        wanted = found.case.solve(impact, ["peak_loss_tangent", "contact_time"])
+        assert one.value == pytest.approx(wanted["peak_loss_tangent"], rel=1e-9)
+        assert one.frequency == pytest.approx(math.pi / wanted["contact_time"], rel=1e-9)
+        assert document["value"] == one.value
+    # that of the case: its error is the elasticity times that of the only parameter
+    one, (time,) = found.loss_tangents[1], found.estimates
+    assert one.velocity == found.case["impact.velocity"]
+    elastic = vcor.sensitivities(found.case, ["rubber.time"], ["peak_loss_tangent"]).item()
+    share = abs(elastic) * time.standard_error / time.value
+    assert one.standard_error == pytest.approx(share * one.value, rel=1e-3)
+    assert "+- " in str(found).partition("loss tangent at pi/t0")[2].splitlines()[1]
+
+
+def test_a_record_has_the_loss_tangent_of_its_impact(sls):
+    """Without measured impacts it is that of the case."""
+    sls["plate.waves"] = "none"
+    history = sls.history()
+    data = {"time": history["time"].values, "force": history.force.values}
+    found = vcor.identify(sls, data, ["rubber.beta"])
+    (one,) = found.loss_tangents
+    assert math.isnan(one.temperature) and one.velocity == sls["impact.velocity"]
+    assert one.value == pytest.approx(sls.solve()["peak_loss_tangent"], rel=1e-3)
+    assert "T [K]" not in str(found) and "source" not in str(found)

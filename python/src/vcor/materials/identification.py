@@ -12,7 +12,7 @@ import dataclasses
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -40,6 +40,7 @@ from .observations import (
     materials_of,
     observations,
     sharpen,
+    velocity_of,
     window,
 )
 from .search import STEP, Problem
@@ -58,7 +59,7 @@ KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_te
         "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift", "valid_temperature_from",
         "valid_temperature_to")  # fmt: skip
 #: What is said of a datum
-DATUM = ("source", "quantity", "at", "value", "sigma", "model", "residual")
+DATUM = ("source", "quantity", "at", "temperature", "value", "sigma", "model", "residual")
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,19 @@ class Estimate:
     #: Profile intervals that hold the value with 68 and 95 %; an open end is 0 or inf
     interval_68: tuple[float, float]
     interval_95: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """Loss tangent of an impact at pi/t0, which decides what it loses."""
+
+    #: Velocity [m/s] and temperature [K], nan if there is none
+    velocity: float
+    temperature: float
+    #: pi/t0 [rad/s]
+    frequency: float
+    value: float
+    standard_error: float
 
 
 @dataclass(frozen=True)
@@ -106,6 +120,8 @@ class Identification:
     advice: str
     #: Prediction: velocity, cor or cor_sphere, and the ends of its 95 % band
     band: dict[str, list[float]] = field(repr=False)
+    #: Of the measured impact of median velocity at each temperature, or of that of the case
+    loss_tangents: tuple[Tangent, ...] = ()
     model: str = ""
     #: Where the model of the impact does not hold, in words
     validity: str = "good"
@@ -144,6 +160,7 @@ class Identification:
             bic=self.bic,
             window=self.window,
             validity=self.validity,
+            loss_tangents=[dataclasses.asdict(one) for one in self.loss_tangents],
             next=self.advice,
             data=self.data,
             band=self.band,
@@ -289,8 +306,12 @@ def _judged(
     likelihood = problem.likelihood(x)
     materials = materials_of(free)
     sources = [block.source for block in problem.blocks for _ in block.quantity]
-    at = np.concatenate([block.at for block in problem.blocks])
-    columns = at, problem.value, problem.sigma, predicted, problem.residuals(x)
+    at, kelvin = (
+        np.concatenate([getattr(block, name) for block in problem.blocks])
+        for name in ("at", "temperature")
+    )
+    kelvin = np.where(np.isnan(kelvin), number(case, "impact.temperature"), kelvin)
+    columns = at, kelvin, problem.value, problem.sigma, predicted, problem.residuals(x)
     rows = tuple(
         dict(zip(DATUM, (source, name, *row), strict=True))
         for source, name, row in zip(
@@ -322,6 +343,7 @@ def _judged(
         window=window(problem.blocks, case, materials[0] if len(materials) == 1 else ""),
         advice=next_measurement(problem, x, covariance),
         band=_band(problem, x, covariance),
+        loss_tangents=tuple(_tangents(problem, x, covariance)),
         model=model,
         validity=_validity(problem, case),
     )
@@ -384,6 +406,34 @@ def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[flo
     columns = {"velocity": grid, name: middle, "low": middle - half, "high": middle + half}
     good = np.isfinite(middle)
     return {name: column[good].tolist() for name, column in columns.items()}
+
+
+def _tangents(problem: Problem, x: Floats, covariance: Floats) -> Iterator[Tangent]:
+    """Loss tangents at pi/t0: at each temperature of the impact of median velocity."""
+    case, free = problem.case, problem.free
+    own = np.array([velocity_of(case)])
+    impacts = problem.impacts or [probe(case, own)]
+    rows: dict[str, list[tuple[float, float, Impacts, int]]] = {}
+    for block in impacts:
+        kelvin = block.settings.get(
+            "impact.temperature", np.full(len(block.velocity), number(case, "impact.temperature"))
+        )
+        for i, (velocity, at) in enumerate(zip(block.velocity, kelvin, strict=True)):
+            rows.setdefault(str(at), []).append((float(velocity), float(at), block, i))
+    for some in rows.values():
+        velocity, at, block, i = sorted(some, key=lambda one: one[0])[len(some) // 2]
+
+        def results(steps: Floats, block: Impacts = block, i: int = i) -> Floats:
+            values, names = np.exp(x + steps), ["peak_loss_tangent", "contact_time"]
+            found: Floats = block.quantities(case, free, values, names, np.array([i]))[:, 0]
+            return found
+
+        tangent, time = results(np.zeros((1, len(x))))[0]
+        if not np.isfinite(tangent):
+            continue
+        slope = slopes(results, len(x), STEP)[0]
+        error = math.sqrt(max(float(slope @ covariance @ slope), 0.0))
+        yield Tangent(velocity, at, math.pi / float(time), float(tangent), error)
 
 
 def _with_model(

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import _library
+from .._library import printable
 from ..case import number
 from .advice import percent
 from .observations import COEFFICIENTS, materials_of
+from .units import ZERO_C
 
 if TYPE_CHECKING:
     from .identification import Identification
 
 #: Data that are shown at most
 _MOST = 20
+#: Temperatures of one source that the legend of a figure names, each
+_TOLD = 6
 #: Abscissae of data that are no impacts
 _ACROSS = {
     "force": "time [s]",
@@ -71,57 +77,118 @@ def report(found: Identification) -> str:
     lines += ["", seen]
     if {row["quantity"] for row in found.data} <= {*COEFFICIENTS}:
         lines += ["these are coefficients only: the scale of times rests on what is not free"]
-    lines += [f"validity: {found.validity}", f"what would help most: {found.advice}", ""]
-    lines.append(f"{'datum':20s}{'at':>12s}{'value':>13s}{'model':>13s}{'residual/error':>16s}")
+    if found.loss_tangents:
+        lines += [
+            "",
+            "loss tangent at pi/t0, the frequency of the contact, which decides the loss:",
+        ]
+    for tangent in found.loss_tangents:
+        warm = "" if math.isnan(tangent.temperature) else f", {tangent.temperature:.2f} K"
+        where = f"{tangent.velocity:.4g} m/s{warm} ({tangent.frequency:.4g} rad/s)"
+        lines.append(f"  {tangent.value:.4g} +- {tangent.standard_error:.2g} at {where}")
+    lines += ["", f"validity: {found.validity}", f"what would help most: {found.advice}", ""]
+    sources, kelvins = _sources(found), {row["temperature"] for row in found.data}
+    several, heated = len(sources) > 1, not all(map(math.isnan, kelvins))
+    head = f"{'datum':20s}" + f"{'source':16s}" * several + f"{'at':>12s}"
+    lines.append(head + f"{'T [K]':>9s}" * heated + f"{'value':>13s}{'model':>13s}"
+                 f"{'residual/error':>16s}")  # fmt: skip
     shown = sorted(found.data, key=lambda row: -abs(row["residual"]))[:_MOST]
-    lines += [
-        f"{r['quantity']:20s}{r['at']:12.5g}{r['value']:13.6g}{r['model']:13.6g}"
-        f"{r['residual']:16.2f}"
-        for r in found.data if any(r is one for one in shown)
-    ]  # fmt: skip
+    for r in found.data:
+        if any(r is one for one in shown):
+            begin = f"{r['quantity']:20s}" + f"{sources[r['source']]:16.15s}" * several
+            begin += f"{r['at']:12.5g}" + f"{r['temperature']:9.2f}" * heated
+            lines.append(f"{begin}{r['value']:13.6g}{r['model']:13.6g}{r['residual']:16.2f}")
     if len(found.data) > len(shown):
         lines.append(f"(the {len(shown)} largest of {len(found.data)} residuals)")
     return "\n".join(lines) + "\n"
+
+
+def _sources(found: Identification) -> dict[str, str]:
+    """Files of data by their names without folders and endings."""
+    return {row["source"]: printable(Path(row["source"]).stem) for row in found.data}
+
+
+@dataclass(frozen=True)
+class _Look:
+    """How data of one source at one temperature are drawn."""
+
+    color: Any
+    marker: str
+    #: In the legend, empty if it names others
+    text: str
+
+
+def _looks(found: Identification) -> dict[tuple[str, str], _Look]:
+    """Colours by temperature, or by source at one temperature; markers by source."""
+    import matplotlib as mpl
+
+    sources = _sources(found)
+    kelvins = sorted({str(row["temperature"]) for row in found.data}, key=float)
+    keys = {(row["source"], str(row["temperature"])) for row in found.data}
+    if len(keys) == 1:
+        return dict.fromkeys(keys, _Look("black", "o", "data"))
+    warm = len(kelvins) > 1
+    shades = mpl.colormaps["viridis"](np.linspace(0, 0.85, len(kelvins if warm else sources)))
+    looks = {}
+    for source, kelvin in sorted(keys, key=lambda key: (float(key[1]), key[0])):
+        i, k = list(sources).index(source), kelvins.index(kelvin)
+        # of many temperatures the lowest, the middle and the highest one
+        own = [one for one in kelvins if (source, one) in keys]
+        told = own if len(own) <= _TOLD else (own[0], own[len(own) // 2], own[-1])
+        parts = [sources[source]] if len(sources) > 1 else []
+        parts += [f"{float(kelvin) - ZERO_C:.4g} °C"] if warm else []
+        looks[source, kelvin] = _Look(
+            shades[k if warm else i], "osD^v"[i % 5], ", ".join(parts) if kelvin in told else ""
+        )
+    return looks
 
 
 def figure(found: Identification) -> Any:
     """Figure (matplotlib): data, model with the band of cor, and residuals below."""
     from ..plot import COLUMN, HEIGHT, PAGE, _label_decades, _labelled, _legend, drawn
 
-    names = list(dict.fromkeys(row["quantity"] for row in found.data))
+    names, looks = list(dict.fromkeys(row["quantity"] for row in found.data)), _looks(found)
+    alone = len(looks) == 1
     width = COLUMN if len(names) == 1 else PAGE
     settings: dict[str, Any] = {"sharex": "col", "squeeze": False, "height_ratios": (3, 1)}
     with drawn(width, 1.4 * HEIGHT, 2, len(names), **settings) as (made, axes):
         for (above, below), name in zip(axes.T, names, strict=True):
-            rows = sorted((r for r in found.data if r["quantity"] == name), key=lambda r: r["at"])
-            at, value, sigma, model, residual = (
-                np.array([row[key] for row in rows])
-                for key in ("at", "value", "sigma", "model", "residual")
-            )
+            rows = [row for row in found.data if row["quantity"] == name]
             attrs = {"units": "N" if name == "force" else "Pa"}
             column = _library.columns(0).get(name)
-            factor, label = _labelled(name, column.attrs if column else attrs, value)
-            # at several temperatures, say, no line leads through all
-            apart = len(set(at)) < len(set(zip(at, model, strict=True)))
-            line = at, factor * model
-            if name in found.band and found.band["velocity"] and not apart:
-                band = {key: np.array(column) for key, column in found.band.items()}
-                line = band["velocity"], band[name]
-                above.fill_between(
-                    band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1",
-                    label="95 % band",
+            factor, label = _labelled(name, column.attrs if column else attrs,
+                                      np.array([row["value"] for row in rows]))  # fmt: skip
+            at = np.array([row["at"] for row in rows])
+            for key, look in looks.items():
+                some = [row for row in rows if (row["source"], str(row["temperature"])) == key]
+                some.sort(key=lambda row: row["at"])
+                if not some:
+                    continue
+                x, value, sigma, model, residual = (
+                    np.array([row[key] for row in some])
+                    for key in ("at", "value", "sigma", "model", "residual")
+                )
+                # at several radii, say, no line leads through all
+                apart = len(set(x)) < len(set(zip(x, model, strict=True)))
+                line = x, factor * model
+                if alone and name in found.band and found.band["velocity"] and not apart:
+                    band = {key: np.array(column) for key, column in found.band.items()}
+                    line = band["velocity"], band[name]
+                    above.fill_between(
+                        band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1",
+                        label="95 % band",
+                    )  # fmt: skip
+                above.plot(
+                    *line, marker="x" if apart else "", ls="" if apart else "-",
+                    color="C1" if alone else look.color, zorder=3, label="model" if alone else "",
                 )  # fmt: skip
-            above.plot(
-                *line, marker="x" if apart else "", ls="" if apart else "-", color="C1",
-                zorder=3, label="model",
-            )  # fmt: skip
-            above.errorbar(
-                at, factor * value, factor * sigma, fmt="o", ms=3, color="black",
-                mfc="white", label="data",
-            )  # fmt: skip
+                above.errorbar(
+                    x, factor * value, factor * sigma, fmt=look.marker, ms=3, color=look.color,
+                    mfc="white", label=look.text,
+                )  # fmt: skip
+                below.plot(x, residual, look.marker, ms=3, color=look.color)
             above.set_ylabel(label)
             below.axhline(0, lw=0.5, color="grey", marker="")
-            below.plot(at, residual, "o", ms=3, color="black")
             below.set(xlabel=_ACROSS.get(name, "velocity [m/s]"), ylabel="residual/error")
             if at.min() > 0 and at.max() > 8 * at.min():
                 above.set_xscale("log")

@@ -107,6 +107,8 @@ class Impacts:
         else:
             self.settings["impact.drop_height"] = self.velocity**2 / (2 * gravity_of(case))
         self.at = self.velocity[self._rows]
+        kelvin = self.settings.get("impact.temperature")
+        self.temperature = np.full(len(self.at), np.nan) if kelvin is None else kelvin[self._rows]
         table = np.stack(list(self.settings.values()), axis=1)
         self.place = [tuple(table[row].tolist()) for row in self._rows]
 
@@ -207,6 +209,8 @@ class Record:
         self.scale = np.full(len(self.at), largest)
         self.digit = factor * last_digit(columns[name])[good]
         self.place = [(t,) for t in self.at.tolist()]
+        kelvin = self.settings.get("impact.temperature", math.nan)
+        self.temperature = np.full(len(self.at), kelvin)
         #: Baseline that was found last [N]
         self.baseline = zero
         if not largest > 0:
@@ -299,6 +303,7 @@ class Moduli:
         self.groups = {float(t): np.flatnonzero((at == t) | np.isnan(at)) for t in np.unique(at)}
         self.place = list(zip(self.points.tolist(), np.nan_to_num(at).tolist(), strict=True))
         self.place *= len(names)
+        self.temperature = np.tile(at, len(names))
         self._moduli(case)
 
     def error_of_model(self, *_: Any) -> Floats:
@@ -328,9 +333,9 @@ class Moduli:
 
 
 #: Data of one file: `quantity`, what each datum is, `at`, its velocity, time or frequency in SI
-#: units, `place`, all that it was measured at, `value`, `scale`, the size that relative errors
-#: refer to, `digit`, the unit of its last digit, and `sigma`, nan where there is no standard error;
-#: of shape (n,)
+#: units, `temperature` [K], nan: that of the case, `place`, all that it was measured at, `value`,
+#: `scale`, the size that relative errors refer to, `digit`, the unit of its last digit, and
+#: `sigma`, nan where there is no standard error; of shape (n,)
 Block = Impacts | Record | Moduli
 
 
