@@ -80,6 +80,7 @@ def drawn(files=None, axes=1, **options):
         (lambda: identified(free=["solver.accuracy"]), "found a setting of the solver"),
         (lambda: exported(["fast"]), "velocities: expected numbers in one dimension"),
         (lambda: exported(np.ma.array([1, 2, 3], mask=[0, 1, 0])), "velocities > 0 that rise"),
+        (lambda: vcor.export([], "lammps", [1, 2]), "cases: expected one or more"),
         (lambda: exported(law="1"), "law: found .1., expected a whole number from 1 to"),
         (lambda: vcor.export(CASE, ["lammps"], [1, 2]), "unknown program"),
         (lambda: vcor.pair({"density": 1.0}, 0.01), "expected the name of the material of each"),

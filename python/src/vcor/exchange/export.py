@@ -59,6 +59,8 @@ def export(
         An impact has no result.
     """
     given = [as_case(one) for one in listed(cases)]
+    if not given:
+        raise UsageError("cases: expected one or more")
     if len(given) == 1:
         return export_pair(given[0], target, velocities, quantity=quantity, master=master, law=law,
                            threads=threads)  # fmt: skip
