@@ -362,3 +362,48 @@ def test_constants_that_the_data_do_not_determine():
     assert "wlf_c1" not in found.keys("t.csv")
     with pytest.raises(vcor.InputError, match=r"two curves at 293.15 K"):
         master.of_curves([curves[2], curves[2]], "data")
+
+
+def spread_curves(seed, vertical=False, noise=0.01, loss=1.0):
+    """Curves of a rubber that disperses, at three temperatures; `loss` is a slope of E''."""
+    rng, curves = np.random.default_rng(seed), []
+    for t in (0, 23, 50):
+        at = 2 * np.pi * np.geomspace(0.1, 100, 13)
+        p = (1.5e-7j * at * 10 ** (-9.5 * (t - 23) / (92 + t))) ** 0.55
+        found = 2.7e6 + 9e8 * p / (1 + p)
+        size = (t + 273.15) / 296.15 if vertical else 1.0
+        rows = np.array([found.real, found.imag * loss ** (t / 50)]) * size
+        rows *= 1 + noise * np.array([[1.0], [1.5]]) * rng.normal(size=(2, 13))
+        curves.append(Curve(t + 273.15, True, at, rows))
+    return curves
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("vertical", [False, True])
+@pytest.mark.parametrize("noise", [0.003, 0.01])
+def test_the_moduli_together_tell_whether_there_is_a_vertical_shift(vertical, noise):
+    wanted = np.array([9.5 * 23 / 92, 0.0, -9.5 * 27 / 142])
+    for seed in (0, 4, 5):
+        found = master.of_curves(spread_curves(seed, vertical, noise), "data", 296.15)
+        assert found.vertical == vertical and not found.apart
+        assert np.abs(found.log_shift - wanted).max() < 0.02
+        assert (np.abs(found.log_shift - wanted) <= 4 * found.log_error).all()
+
+
+def test_moduli_that_contradict_each_other_either_way_are_a_warning():
+    curves = spread_curves(0, loss=2.0)
+    with pytest.warns(UserWarning, match=r"data: the loss moduli at 0 C and 23 C .* 1 more pairs"):
+        found = master.of_curves(curves, "data", 296.15)
+    assert len(found.apart) == 2 and all(one in str(found) for one in found.apart)
+
+
+def test_a_vertical_shift_may_be_given(tmp_path, capsys):
+    path = tmp_path / "raw.csv"
+    path.write_text(table(f"T [C],{HEAD}", [0, 10, 20]))
+    words = [str(path), "--output", str(tmp_path), "--vertical-shift"]
+    for given in ("yes", "no"):
+        master.main([*words, given])
+        assert ("vertical_shift = .true." in capsys.readouterr().out) == (given == "yes")
+    with pytest.raises(SystemExit):
+        master.main([*words, "maybe"])
+    assert "--vertical-shift" in capsys.readouterr().err

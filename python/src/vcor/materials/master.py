@@ -12,6 +12,7 @@ import math
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -186,6 +187,7 @@ def master(
     *,
     reference_temperature: float | None = None,
     poisson_ratio: float | None = None,
+    vertical_shift: bool | None = None,
     columns: Columns = None,
     units: Units = None,
 ) -> Master:
@@ -199,6 +201,8 @@ def master(
         [K], one of those of the data within 3 K is taken; None: that in their middle.
     poisson_ratio
         Poisson's ratio, by which shear moduli become tensile ones; needed for them only.
+    vertical_shift
+        Whether the moduli are also proportional to the temperature; None: the data tell.
     columns, units
         Which columns of the files are what, and their units, as for `vcor.read_data`.
 
@@ -223,16 +227,21 @@ def master(
         for name in names
         for one in read_moduli(name, columns, units, poisson_ratio=poisson_ratio)
     ]
-    found = of_curves([curve_of(one) for one in read], str(names[0]), reference_temperature)
+    found = of_curves(
+        [curve_of(one) for one in read], str(names[0]), reference_temperature, vertical_shift
+    )
     return dataclasses.replace(
         found, taken=tuple(dict.fromkeys(one.attrs["taken"] for one in read))
     )
 
 
 def of_curves(
-    read: Sequence[Curve], source: str, reference_temperature: float | None = None
+    read: Sequence[Curve],
+    source: str,
+    reference_temperature: float | None = None,
+    vertical_shift: bool | None = None,
 ) -> Master:
-    """Master curve of curves of a source."""
+    """Master curve of curves of a source; a warning says where moduli contradict each other."""
     curves = sorted(read, key=lambda one: one.temperature)
     if any(math.isnan(curve.temperature) for curve in curves):
         raise InputError(f"{source}: found no column of temperatures, expected one named T, or "
@@ -253,7 +262,10 @@ def of_curves(
             slip = slip if reference_temperature < COLDEST else ""
             raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, the "
                              f"nearest are at {temperatures[middle]:.2f} K{slip}")  # fmt: skip
-    found, vertical = steps_of(curves)
+    found, vertical = steps_of(curves, vertical_shift)
+    if apart := tuple(one.apart for one in found if one.apart):
+        more = f"; so it is at {len(apart) - 1} more pairs" if len(apart) > 1 else ""
+        warnings.warn(f"{source}: {apart[0]}{more}", stacklevel=2)
     steps = np.array([one.value for one in found]) / math.log(10)
     errors = np.sqrt([one.variance for one in found]) / math.log(10)
     reference = float(temperatures[middle])
@@ -280,7 +292,7 @@ def of_curves(
         tuple(curves),
         told,
         vertical,
-        tuple(one.apart for one in found if one.apart),
+        apart,
     )
 
 
@@ -311,6 +323,8 @@ def _parser() -> _command.Parser:
     add("--reference", metavar="TEMPERATURE", help="such as 20C or 293.15K; default: the middle")
     what = "for shear moduli: Poisson's ratio, by which they become tensile ones"
     add("--poisson-ratio", type=float, metavar="NU", help=what)
+    what = "whether moduli are also proportional to the temperature; default: the data tell"
+    add("--vertical-shift", choices=("yes", "no"), help=what)
     add_data_options(parser)
     return parser
 
@@ -325,9 +339,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _work(options: argparse.Namespace) -> None:
     given = options.reference
     reference = kelvin(given, "--reference") if given is not None else None
-    ratio = options.poisson_ratio
+    ratio, vertical = options.poisson_ratio, options.vertical_shift
     found = master(
         options.data, reference_temperature=reference, poisson_ratio=ratio,
+        vertical_shift=None if vertical is None else vertical == "yes",
         columns=columns_option(options.columns), units=options.units,
     )  # fmt: skip
     dynamic = found.curves[0].dynamic

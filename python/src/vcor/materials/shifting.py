@@ -90,7 +90,7 @@ class Step:
     #: nan if the curves do not determine it
     value: float = math.nan
     variance: float = math.nan
-    #: Weighted sum of squares, and its degrees of freedom
+    #: Weighted sum of squares, infinite for curves that do not overlap, and its degrees of freedom
     squares: float = 0.0
     dof: int = 0
     #: Why there is none
@@ -99,35 +99,29 @@ class Step:
     apart: str = ""
 
 
-def step_between(cold: Curve, warm: Curve, vertical: bool = False) -> Step:
-    """The step between neighbours; with `vertical` moduli are proportional to the temperature.
+@dataclass(frozen=True)
+class _Trial:
+    """Steps between neighbours by all their moduli and by the storage moduli alone."""
 
-    Storage and loss modulus together, unless the storage moduli tell another shift: the loss moduli
-    of a glass are often those of the instrument. Where the storage moduli are too flat, the step
-    has to differ from none.
-    """
-    if not cold.dynamic:
-        return _step(cold, warm, vertical)
-    try:
-        both = _step(cold, warm, vertical)
-    except NumericalError as error:
-        both = Step(told=str(error))
-    known = not both.told and both.value < -2 * math.sqrt(both.variance)
-    try:
-        storage = _step(cold.storage, warm.storage, vertical)
-    except NumericalError:
-        if not known:
-            raise
-        return both
-    if storage.told:
-        return both if known else storage
-    if both.told or abs(both.value - storage.value) > AGREE * math.sqrt(storage.variance):
-        both = storage
-    if both is storage:
-        pair = f"the loss moduli at {cold.place} and {warm.place}"
-        said = "tell another shift than the storage moduli, by which alone they are shifted"
-        return dataclasses.replace(storage, apart=f"{pair} {said}")
-    return both
+    every: Step
+    storage: Step
+
+    @property
+    def agree(self) -> bool:
+        """Whether all moduli tell the step that the storage moduli tell.
+
+        Where these are too flat to tell one, the step of all has to differ from none.
+        """
+        every, storage = self.every, self.storage
+        if every.told or storage.told:
+            return not every.told and every.value < -2 * math.sqrt(every.variance)
+        return abs(every.value - storage.value) <= AGREE * math.sqrt(storage.variance)
+
+
+def _trial(cold: Curve, warm: Curve, vertical: bool) -> _Trial:
+    """The steps between neighbours; with `vertical` moduli are proportional to the temperature."""
+    every = _step(cold, warm, vertical)
+    return _Trial(every, _step(cold.storage, warm.storage, vertical) if cold.dynamic else every)
 
 
 def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
@@ -169,10 +163,9 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
         told = f"{pair} are too flat for their scatter to tell the shift between them"
         return Step(told=told + ", and so are the loss moduli" * cold.dynamic)
     if best in (0, len(trials) - 1):
-        raise NumericalError(
-            f"{pair} have none in common, by which alone they are shifted; expected more "
-            f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
-        )
+        told = f"{pair} have none in common, by which alone they are shifted; expected more "
+        told += f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
+        return Step(told=told, squares=math.inf)
     h = trials[1] - trials[0]
     found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
                             options={"xatol": 1e-8})  # fmt: skip
@@ -183,24 +176,36 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
     return Step(value, float(2 * noise / curvature), float(found.fun), dof)
 
 
-def steps_of(curves: Sequence[Curve]) -> tuple[list[Step], bool]:
-    """Steps between neighbours, and whether the moduli are proportional to the temperature too."""
-    pairs, found, refused = list(zip(curves[:-1], curves[1:], strict=True)), [], []
-    for vertical in (False, True):
-        try:
-            found.append([step_between(*pair, vertical) for pair in pairs])
-        except NumericalError as error:
-            refused.append((error, vertical))
-    if len(refused) == 2:
-        raise refused[0][0]
-    if refused:
-        return found[0], not refused[0][1]
-    plain, shifted = found
-    both = [pair for pair in zip(plain, shifted, strict=True) if not (pair[0].told or pair[1].told)]
-    squares = [sum(pair[i].squares for pair in both) for i in (0, 1)]
-    noise = max(1.0, squares[1] / max(1, sum(pair[1].dof for pair in both)))
-    vertical = bool(both) and squares[0] > squares[1] + VERTICAL * noise
-    return (shifted if vertical else plain), vertical
+def steps_of(curves: Sequence[Curve], vertical: bool | None = None) -> tuple[list[Step], bool]:
+    """Steps between neighbours, and whether the moduli are proportional to the temperature too.
+
+    The moduli tell by the sum of squares of all of them, unless `vertical` is given. The loss
+    moduli of a pair count in it unless they contradict the storage moduli either way, as those of a
+    glass, which are often those of the instrument.
+    """
+    pairs = list(zip(curves[:-1], curves[1:], strict=True))
+    trials = [[_trial(*pair, way) for way in (False, True)] for pair in pairs]
+    if vertical is None:
+        compared = [
+            [way.every if any(one.agree for one in trial) else way.storage for way in trial]
+            for trial in trials
+        ]
+        seen = [ways for ways in compared if not any(one.told and not one.squares for one in ways)]
+        plain, shifted = (sum(ways[i].squares for ways in seen) for i in (0, 1))
+        noise = max(1.0, shifted / max(1, sum(ways[1].dof for ways in seen)))
+        vertical = plain > shifted + VERTICAL * noise
+    found = []
+    for pair, trial in zip(pairs, trials, strict=True):
+        chosen = trial[vertical]
+        step = chosen.every if chosen.agree or not pair[0].dynamic else chosen.storage
+        if math.isinf(step.squares):
+            raise NumericalError(step.told)
+        if not (step is chosen.every or step.told):
+            said = "tell another shift than the storage moduli, by which alone they are shifted"
+            places = f"{pair[0].place} and {pair[1].place}"
+            step = dataclasses.replace(step, apart=f"the loss moduli at {places} {said}")
+        found.append(step)
+    return found, vertical
 
 
 @dataclass(frozen=True)
