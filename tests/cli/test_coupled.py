@@ -206,3 +206,12 @@ def test_a_force_without_a_largest_value(vcor):
     )
     done = vcor("run", "case.nml", "--print", "cor")
     assert done.code == NUMERICAL and done.out == "nan\n"
+
+
+@pytest.mark.parametrize("density", ["1e6", "1e20"])
+def test_waves_slower_than_the_edge(vcor, density):
+    """Where the edge outruns the waves all the time, the march ends with an error, and soon."""
+    vcor.write(text("sls", "sphere", "half_space", 0.5, "body").replace("1100.0", density))
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and done.out == "nan\n"
+    assert "exceeds solver.accuracy" in done.err

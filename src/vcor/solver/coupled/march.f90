@@ -427,8 +427,10 @@ contains
 
       course%status = course_ended
       k = course%steps
-      if (impact%law%start_exponent < round) then
-         ! the edge of a blunt body is faster than the waves for longer than a step
+      fast = supersonic(impact, kernel, -course%velocity(k))
+      if (impact%law%start_exponent < round .or. fast > real(k, wp)*course%dt) then
+         ! the edge of a blunt body is faster than the waves for longer than a step, and that of any
+         ! body on a plate of very slow waves all the time
          course%contact_time = (real(k, wp) - before_end(axis(size(axis) - 1:)))*course%dt
          course%time_error = course%dt
          return
@@ -443,7 +445,6 @@ contains
             end do
          end associate
       end if
-      fast = supersonic(impact, kernel, -course%velocity(k))
       course%contact_time = (real(k, wp) - before_end(steady))*course%dt - advance*fast
       course%time_error = unknown*fast
    end subroutine end_contact
