@@ -45,6 +45,7 @@ CASES = {
 VALUES = {
     "velocity": ("3", "7"),
     "poisson_ratio": ("0.1", "0.3"),
+    "diameter": ("0.018", "0.022"),
     "surface_radius": ("0.3", "0.5"),
     "half_thickness": ("0.015", "0.03"),
     "mass": ("0.01", "0.03"),

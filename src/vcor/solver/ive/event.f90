@@ -1,4 +1,4 @@
-!> Events: the largest indentation, the end of a contact, a maximum of the force
+!> The events of a march: the largest indentation, the end of a contact, a maximum of the force
 !>
 !> A panel that contains an event is solved again with other lengths, until the event is at its end:
 !> there collocation is most accurate, and all integrals are sums over whole panels. The length
