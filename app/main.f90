@@ -17,7 +17,7 @@ program vcor_main
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, error_usage, raise
    use vcor_io_file, only : write_stdout
-   use vcor_io_number, only : decimal_text
+   use vcor_number, only : real_text
    use vcor_solver, only : default_accuracy
    use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, share_error, this_rank
    use vcor_text, only : integer_text
@@ -163,7 +163,7 @@ contains
          text = text//'! points: '//integer_text(job%sweep%grid%count())//new_line('a')
       else if (.not. job%case%given('sphere', 'mass')) then
          text = text//'! mass of the sphere: ' &
-            //decimal_text(job%sweep%problem%impact%mass)//' kg'//new_line('a')
+            //real_text(job%sweep%problem%impact%mass)//' kg'//new_line('a')
       end if
    end function chosen
 

@@ -4,7 +4,7 @@
 !>
 !> writes three tables. FOLDER/accuracy.csv: time and true error of the paper's impacts over the
 !> accuracy asked for. FOLDER/modes.csv: time over the number of terms of a Prony series.
-!> FOLDER/models.csv: time of the exact models beside the paper's. A method
+!> FOLDER/models.csv: time of the exact models compared with the paper's. A method
 !> that cannot do an impact, or takes longer than half a second for it, has no row
 program accuracy
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# vcor beside other ODE solvers, on the same impacts at the same error of cor (below
+# vcor compared with other ODE solvers, on the same impacts at the same error of cor (below
 # 1e-8): a table on the screen, or with --csv FILE the lines behind it in a file.
 #
 #   benchmarks/compare.sh [--csv FILE]

@@ -37,7 +37,7 @@ struct way {
    int formulas; /* CV_ADAMS or CV_BDF */
    enum iteration iteration;
    bool root;     /* square root of time as the independent variable */
-   bool weighted; /* tolerances that know the moduli */
+   bool weighted; /* tolerances scaled by the moduli */
 };
 
 /* The problem, and what CVODE's functions need between calls */

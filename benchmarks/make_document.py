@@ -112,7 +112,7 @@ def modes_table(rows):
 
 
 def models_table(rows):
-    """Time of the exact models beside the paper's, a column per model."""
+    """Time of the exact models compared with the paper's, a column per model."""
     models = list(dict.fromkeys((row["waves"], row["law"]) for row in rows))
     found = {(r["problem"], r["waves"], r["law"]): float(r["microseconds"]) for r in rows}
     lines = []

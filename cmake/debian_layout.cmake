@@ -1,5 +1,5 @@
-# Run by cpack before it makes the packages: the licence has its place and name of Debian's policy, and
-# what zsh completes is where packages of Debian have it
+# Run by cpack before it makes the packages: the licence gets the place and name of Debian's policy, and
+# completion for zsh the folder that Debian's packages use
 file(GLOB folders "${CPACK_TEMPORARY_DIRECTORY}/*")
 foreach(folder IN LISTS folders)
   cmake_path(GET folder FILENAME component)

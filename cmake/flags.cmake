@@ -2,8 +2,8 @@
 #
 #   vcor_set_flags(<target> [<level>])
 #
-# A release has CMake's own -O3 for what computes impacts and writes sweeps. All else has <level>, by
-# default -O1, which compiles in half of the time and still finds uninitialised variables. Not
+# A release uses CMake's -O3 for code that computes impacts and writes sweeps. All other code uses
+# <level>, by default -O1, which compiles in half of the time and still finds uninitialised variables. Not
 # -ffast-math (it makes ieee_is_nan false) and not -march=native (the program runs elsewhere too).
 
 function(vcor_set_flags target)

@@ -1,10 +1,10 @@
-# Have a program linked with the archives of HDF5 instead of its shared libraries, where they are
-# there and a program can be made with them. Debian's shared ones bring thirty others along, for files
-# in a network, and to load them takes two thirds of the time of a single impact.
+# Link a program with the static libraries of HDF5 instead of the shared ones, where they exist and a
+# test program links with them. Debian's shared libraries load thirty others, for files in a network,
+# which takes two thirds of the time of a single impact.
 
 function(vcor_link_hdf5_archives program)
   set(archives)
-  # each stands on those after it
+  # each depends on those after it
   foreach(target IN ITEMS hdf5::hdf5_hl_fortran hdf5::hdf5_hl hdf5::hdf5_fortran hdf5::hdf5)
     if(NOT TARGET ${target})
       return()
@@ -16,11 +16,11 @@ function(vcor_link_hdf5_archives program)
     endif()
     list(APPEND archives "${archive}")
   endforeach()
-  # what compresses
+  # libraries for compression
   list(APPEND archives z sz)
 
-  # the shared ones are on the same line, from the library: this leaves them out, as long as what uses
-  # HDF5 (vcor::files) is named before the archives
+  # the shared libraries stand on the same line, from vcor's library: this option omits them, provided
+  # that vcor::files, which uses HDF5, precedes the static libraries
   set(option -Wl,--as-needed)
   get_target_property(folders hdf5::hdf5_fortran INTERFACE_INCLUDE_DIRECTORIES)
   try_compile(vcor_has_hdf5_archives

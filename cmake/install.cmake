@@ -1,12 +1,12 @@
 # Where `cmake --install` puts files: component program is for users, development is what others build
-# with. Everything is found relative to the prefix, so the tree can be moved as a whole.
+# with. All paths are relative to the prefix, so the tree can be moved as a whole.
 include(CMakePackageConfigHelpers)
 
 set(vcor_cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/vcor")
 
 # Program and library. A shared library (BUILD_SHARED_LIBS) belongs to the program; its version
-# changes with every release, since the layout of Fortran types is part of the interface. That for C
-# stays the same until its functions change
+# changes with every release, since the layout of Fortran types is part of the interface. The version
+# of the C interface changes only with its functions
 set(vcor_libraries_installed ${vcor_parts})
 if(TARGET vcor_c)
   list(APPEND vcor_libraries_installed vcor_c)
@@ -43,12 +43,12 @@ install(FILES
   "${PROJECT_BINARY_DIR}/vcorConfig.cmake" "${PROJECT_BINARY_DIR}/vcorConfigVersion.cmake"
   DESTINATION "${vcor_cmake_folder}" COMPONENT development)
 
-# For pkg-config. Everyone who links with a static library needs its dependencies, so they are not
+# For pkg-config. A static library needs its dependencies wherever it is linked, so they are not
 # private then, and --static is not needed
 file(RELATIVE_PATH vcor_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" vcor_up "${vcor_up}")
-# vcor_pkg_config(<name> <part> ...): the file of some parts, those that need others first. Part vcor is
-# names without code, which need not be linked
+# vcor_pkg_config(<name> <part> ...): the file of some parts, each before those it depends on. Part vcor
+# holds names without code and need not be linked
 set(vcor_includes "${CMAKE_INSTALL_INCLUDEDIR}/${vcor_module_folder}")
 function(vcor_pkg_config name)
   set(vcor_name "${name}")
@@ -100,12 +100,12 @@ foreach(page IN LISTS vcor_pages)
   install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}" COMPONENT program)
 endforeach()
 add_custom_target(vcor_man ALL DEPENDS ${compressed})
-# All that is installed without its own component, so that a build of this target (scripts/run.sh) can be
-# installed
+# The target of all files that are installed without a component of their own: scripts/run.sh builds it,
+# so that its build can be installed
 add_custom_target(vcor_installed)
 add_dependencies(vcor_installed vcor_program vcor_man ${vcor_libraries_installed})
 
-# Words of the command line for the shells
+# Completion of the command line for shells
 install(FILES completion/vcor.bash RENAME vcor
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
 install(FILES completion/_vcor
@@ -113,8 +113,8 @@ install(FILES completion/_vcor
 install(FILES completion/vcor.fish
   DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
 
-# The Python package where Debian's Python looks, for its package only: others install it with pip. Its
-# commands are those of python/pyproject.toml
+# The Python package in the folder of Debian's Python, for the Debian package only: others install it
+# with pip. Its commands are those of python/pyproject.toml
 if(TARGET vcor_python)
   set(python_folder lib/python3/dist-packages)
   install(TARGETS vcor_python LIBRARY DESTINATION "${python_folder}/vcor/lib" COMPONENT python

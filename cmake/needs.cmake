@@ -3,11 +3,11 @@
 #   vcor_needs(<target> <package> [COMPONENTS <component> ...] TARGETS <imported target> ...
 #              [DEBIAN <package> ...])
 #
-# finds the package, links the target with it, and keeps what those need who build with an installed
-# library: the line for vcorConfig.cmake in <target>_find_dependencies, the libraries for pkg-config
+# finds the package, links the target with it, and records what builds with an installed library
+# need: the line for vcorConfig.cmake in <target>_find_dependencies, the libraries for pkg-config
 # in <target>_needed_libraries, Debian's packages in vcor_debian_packages.
 #
-# A macro, since what find_package says is wanted where it is called.
+# A macro, so that the variables set by find_package are visible to the caller.
 
 macro(vcor_needs target package)
   cmake_parse_arguments(need "" "" "COMPONENTS;TARGETS;DEBIAN" ${ARGN})
@@ -28,12 +28,12 @@ macro(vcor_needs target package)
   endforeach()
 endmacro()
 
-# Words of the linker's command line for a target or a library: -L/folder -lname for a file, without
-# a folder that the linker searches anyway, -lname, or an option
+# Arguments of the linker for a target or a library: -L/folder -lname for a file (without -L for a
+# folder that the linker searches by default), -lname, or an option
 function(vcor_library_words result library)
   set(words)
   if(TARGET ${library})
-    # an imported target is its file and its own dependencies
+    # an imported target stands for its file and its dependencies
     foreach(property IN ITEMS
         IMPORTED_LOCATION IMPORTED_LOCATION_RELEASE IMPORTED_LOCATION_NONE INTERFACE_LINK_LIBRARIES)
       get_target_property(values ${library} ${property})

@@ -1,14 +1,14 @@
-# Packages, by `cpack` in the build folder: vcor with the program, libvcor-dev with what others build
-# with, python3-vcor with the Python package
+# Packages, by `cpack` in the build folder: vcor has the program, libvcor-dev the library for other
+# programs, python3-vcor the Python package
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the vcor developers")
-# Debian wants an address; who publishes packages has one to set here
+# Debian requires an address; publishers of packages set theirs here
 set(VCOR_MAINTAINER "the vcor developers <vcor@vcor.invalid>" CACHE STRING
   "Maintainer of the packages, as in: Name <address>")
 set(CPACK_PACKAGE_CONTACT "${VCOR_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
 set(CPACK_STRIP_FILES TRUE)
-# Debian's name of the licence, in a folder for each package
+# The licence under Debian's name, in a folder for each package
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/debian_layout.cmake")
 
 set(CPACK_COMPONENTS_ALL program development)
@@ -28,7 +28,7 @@ restitution, contact time, indentation, force and energies, with an estimate
 of the numerical error. Cases are text files, results CSV and HDF5.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvcor-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-# The compiler that can read the module files, and the one that CMake finds HDF5 with (gcc)
+# The compiler that reads the module files, and gcc, with which CMake finds HDF5
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "gfortran-${vcor_compiler_major}" gfortran ${vcor_debian_packages})
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION

@@ -1,4 +1,4 @@
-# The version of the project stands in fpm.toml alone.
+# fpm.toml is the only place of the project's version.
 #
 #   vcor_read_version(<manifest> <variable>)
 #

@@ -1,6 +1,6 @@
 !> Tuning constants of the materials and the solvers
 !>
-!> Each has the reason beside it. Those of the internal variables, ive_*, are the control of its
+!> Each states its reason. Those of the internal variables, ive_*, are the control of its
 !> march
 module vcor_tuning
    use vcor_kinds, only : wp

@@ -99,7 +99,7 @@ def test_sweeps_and_lists(vcor):
 
 
 @pytest.mark.parametrize("case", ["a.nml", "deep/er/a.nml"])
-def test_data_files_are_beside_the_file_that_names_them(vcor, case):
+def test_data_files_are_in_the_folder_of_the_file_that_names_them(vcor, case):
     """And the completed case, as it stands in the results, runs where the case stood."""
     vcor.write(POINTS, "library/points.csv")
     vcor.write(TABLE.split("&solver")[0], "library/m.nml")

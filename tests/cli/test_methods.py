@@ -226,7 +226,7 @@ PAIR = """
 """
 
 
-def test_beside_a_fluid(vcor):
+def test_pair_with_fluid(vcor):
     """Eq. (1) with a fluid that is gone long before the contact ends: auto is ive, as the help says,
     and sees that the bodies stick, as direct does."""
     vcor.write(PAIR)

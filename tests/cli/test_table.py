@@ -203,7 +203,7 @@ def test_units_are_known(table):
     table.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=["'psi'", "MPa, GPa"])
 
 
-def test_file_beside_the_case(vcor):
+def test_file_in_the_folder_of_the_case(vcor):
     """A path is from the folder of the case, wherever the program runs."""
     text = TABLE.replace("data.csv", "data/rubber.csv")
     vcor.write(text, "study/case.nml")

@@ -110,7 +110,7 @@ def test_judged(vcor, row):
 
 
 def test_alumina_on_glass(vcor):
-    """What docs/validity.md says of each plate model beside the measured 0.98."""
+    """What docs/validity.md says of each plate model, compared with the measured 0.98."""
     names = "cor,half_space_loss,plate_wave_number,validity,validity_cause"
     path = ROOT / "examples" / "alumina_on_glass.nml"
     found = {}

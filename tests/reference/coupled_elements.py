@@ -160,19 +160,19 @@ def impact(case: Case, growth: float) -> float:
         following = 2 * now - before - per_mass * (stiffness @ (case.young * now + case.relaxing * memory))
         following[fixed] = 0.0
         free = 2 * height - height_before
-        dent = -following[face]
-        pressed = dent < free - profile
+        deflection = -following[face]
+        pressed = deflection < free - profile
         for _ in range(20):
             if pressed.any():
-                height_next = (ball * free + (face_mass * (dent + profile))[pressed].sum()) / (
+                height_next = (ball * free + (face_mass * (deflection + profile))[pressed].sum()) / (
                     ball + face_mass[pressed].sum())
             else:
                 height_next = free
-            update = dent < height_next - profile
+            update = deflection < height_next - profile
             if np.array_equal(update, pressed):
                 break
             pressed = update
-        force = np.where(pressed, face_mass * (height_next - profile - dent) / dt**2, 0.0)
+        force = np.where(pressed, face_mass * (height_next - profile - deflection) / dt**2, 0.0)
         following[face] -= force * dt**2 / face_mass
         impulse += force.sum() * dt
         memory = memory * decay + (following - now) * gain

@@ -350,7 +350,7 @@ class Impact:
         if self.pair == "eq1":
             return min(a.singular_exponent, b.singular_exponent)
         if a.viscosity and b.viscosity:
-            # what is left beside the common dashpot: the squares of the shares
+            # what is left besides the common dashpot: the squares of the shares
             return max(a.singular_exponent, b.singular_exponent)
         if a.viscosity or b.viscosity:
             return (b if a.viscosity else a).singular_exponent

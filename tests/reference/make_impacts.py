@@ -321,7 +321,7 @@ def designed():
     for waves, law in (("none", "boltzmann"), ("relaxing", "boltzmann"), ("constant", "receding"),
                        ("frozen", "boltzmann"), ("relaxing", "receding")):
         yield f"table, {waves}, {law}", impact((RIGID, TABLE), waves, law, velocity=3.0)
-    yield "table beside an elastic sphere", impact((SOFT, TABLE), "relaxing", "boltzmann")
+    yield "table and an elastic sphere", impact((SOFT, TABLE), "relaxing", "boltzmann")
 
 
 def write_table(path):

@@ -18,25 +18,25 @@ from scipy.special import j1, jn_zeros
 
 # ------------------------------------------------------------------- impacts of another force law
 
-def elastic_impact(force, dent):
-    """Energy, contact time and largest force of an elastic impact of unit mass with this dent."""
+def elastic_impact(force, indentation):
+    """Energy, contact time and largest force of an elastic impact of unit mass with this indentation."""
     def energy(d):
         return quad(lambda y: 2 * y * force(y * y), 0, math.sqrt(d))[0]
 
-    top = energy(dent)
+    top = energy(indentation)
 
     def rate(angle):
-        d = dent * math.sin(angle) ** 2
-        return 2 * math.sin(angle) * math.cos(angle) * dent / math.sqrt(2 * (top - energy(d)))
+        d = indentation * math.sin(angle) ** 2
+        return 2 * math.sin(angle) * math.cos(angle) * indentation / math.sqrt(2 * (top - energy(d)))
 
-    return top, 2 * quad(rate, 0, math.pi / 2 - 1e-6, limit=200)[0], force(dent)
+    return top, 2 * quad(rate, 0, math.pi / 2 - 1e-6, limit=200)[0], force(indentation)
 
 
-def beside_hertz(force, dent):
+def compare_with_hertz(force, indentation):
     """By how much contact time and largest force differ from Hertz' at the energy that brings
-    Hertz' contact to this dent; force tends to dent^1.5."""
-    energy, time, largest = elastic_impact(lambda d: d ** 1.5, dent)
-    own = brentq(lambda d: elastic_impact(force, d)[0] - energy, 0.3 * dent, 2 * dent)
+    Hertz' contact to this indentation; force tends to indentation^1.5."""
+    energy, time, largest = elastic_impact(lambda d: d ** 1.5, indentation)
+    own = brentq(lambda d: elastic_impact(force, d)[0] - energy, 0.3 * indentation, 2 * indentation)
     _, t, f = elastic_impact(force, own)
     return t / time - 1, f / largest - 1
 
@@ -54,24 +54,24 @@ def sneddon(d):
 
 
 def contact():
-    print("a/R by Hertz; force at the same dent, contact time and largest force against Hertz")
+    print("a/R by Hertz; force at the same indentation, contact time and largest force against Hertz")
     print("  a/R    sphere's true shape (Sneddon)      neo-Hookean, 1 - 0.15 d/R")
     for x in (0.1, 0.2, 0.4, 0.6, 0.67, 0.8, 0.95):
         row = []
         for law in (sneddon, lambda d: d ** 1.5 * (1 - 0.15 * d)):
-            time, largest = beside_hertz(law, x * x)
+            time, largest = compare_with_hertz(law, x * x)
             row.append(f"{law(x * x) / x ** 3 - 1:+8.4f} {time:+8.4f} {largest:+8.4f}")
         print(f"  {x:.2f} {'     '.join(row)}")
 
 
 def layer():
-    print("a/(2h); force at the same dent, contact time and largest force against a half space")
+    print("a/(2h); force at the same indentation, contact time and largest force against a half space")
     laws = {"bonded": (1.133, 1.283, 0.769, 0.0975), "unbonded": (0.884, 0.781, 0.386, 0.0048)}
     for name, c in laws.items():
         def factor(x, c=c):
             return 1 + x * (c[0] + x * (c[1] + x * (c[2] + x * c[3])))
         for x in (0.05, 0.1, 0.2, 0.3):
-            time, largest = beside_hertz(
+            time, largest = compare_with_hertz(
                 lambda d, x=x, factor=factor: d ** 1.5 * factor(x * math.sqrt(d)), 1.0)
             print(f"  {name:8s} {x:.2f} {factor(x) - 1:+8.3f} {time:+8.3f} {largest:+8.3f}")
 
@@ -90,15 +90,15 @@ def sphere_compliance(x, nu):
     p = np.sqrt(np.maximum(1 - (np.sin(theta) / x) ** 2, 0))
     force = 2 * math.pi * np.sum(p * mu * area)
     old, new = np.ones_like(mu), mu.copy()
-    dent = np.sum(p * area) / 2 * (1 - 2 * nu) / (1 + nu) + 1.5 * np.sum(p * mu * area) * first(nu)
+    indentation = np.sum(p * area) / 2 * (1 - 2 * nu) / (1 + nu) + 1.5 * np.sum(p * mu * area) * first(nu)
     count = int(60 / x)
     sums = []
     for n in range(2, count + 1):
         old, new = new, ((2 * n - 1) * mu * new - (n - 1) * old) / n
         u = (n * (n * n + 2 * n - 1 + 2 * nu) / (n - 1) - (n + 1) * (n - 2 + 4 * nu)) / (
             2 * (n * n + n + 1 + nu * (2 * n + 1)))
-        dent += (2 * n + 1) / 2 * np.sum(p * new * area) * u
-        sums.append(dent)
+        indentation += (2 * n + 1) / 2 * np.sum(p * new * area) * u
+        sums.append(indentation)
     half_space = 3 * (1 - nu ** 2) * force / (4 * (1 + nu) * x)
     return np.mean(sums[-count // 4:]) / half_space - 1
 
@@ -119,18 +119,18 @@ def first(nu):
 
 
 def sphere():
-    print("free elastic sphere on a rigid plane: dent at the same force, first order; contact time")
+    print("free elastic sphere, rigid plane: indentation at the same force, first order; contact time")
     print("and largest force of an impact, against Hertz")
     for nu in (0.25, 0.3, 0.4, 0.499):
         for x in (0.05, 0.1, 0.2, 0.3):
             c = -sphere_compliance(x, nu) / x
 
             def law(d, c=c, x=x):
-                # d = f^2 (1 - c x f), force f^3, Hertz' dent is 1
+                # d = f^2 (1 - c x f), force f^3, Hertz' indentation is 1
                 return brentq(lambda f: f * f * (1 - c * x * f) - d, 0, 2 / (3 * c * x)) ** 3
 
-            time, largest = beside_hertz(law, 1.0)
-            print(f"  nu {nu:.3f} a/r {x:.2f} dent {-c * x:+.4f} time {time:+.3f} "
+            time, largest = compare_with_hertz(law, 1.0)
+            print(f"  nu {nu:.3f} a/r {x:.2f} indentation {-c * x:+.4f} time {time:+.3f} "
                   f"force {largest:+.3f}")
 
 
@@ -138,7 +138,7 @@ def sphere():
 
 def compliance(s, nu, a_f=0.0):
     """C(s) of a layer of thickness 1 with mu = rho = 1: displacement of the loaded face under a
-    point force beyond the static half space's dent, by Rayleigh and Lamb's equations."""
+    point force beyond the static half space's indentation, by Rayleigh and Lamb's equations."""
     ratio = 2 * (1 - nu) / (1 - 2 * nu)
 
     def integrand(k):

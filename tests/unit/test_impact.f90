@@ -260,18 +260,18 @@ contains
       call success(error, "another power law")
       call other%set_constants(error, poisson_ratio=0.4_wp)
       call pair_of(power_law, other, "two power laws")
-      call beside_elastic(sls, steel, 4, "SLS and steel")
-      call beside_elastic(sls, glass, 4, "SLS and glass")
+      call check_with_elastic(sls, steel, 4, "SLS and steel")
+      call check_with_elastic(sls, glass, 4, "SLS and glass")
       call new_prony(soft, 1.0e7_wp, [1.0e9_wp, 4.0e8_wp, 3.0e7_wp], &
          [1.0e6_wp, 1.0e4_wp, 3.0e2_wp], 0.0_wp, error)
-      call beside_elastic(soft, glass, 150, "three relaxation times and glass")
+      call check_with_elastic(soft, glass, 150, "three relaxation times and glass")
       ! powers of 1/2, and of more than 1
       call new_elastic(soft, 22.0e6_wp, error)
-      call beside_elastic(sls, soft, 60, "SLS and something as hard")
+      call check_with_elastic(sls, soft, 60, "SLS and something as hard")
       call new_elastic(soft, 1.0e6_wp, error)
       call pair_of(sls, soft, "SLS and something softer")
 
-      ! An SLS of glassy modulus g and rubbery r beside an elastic body of modulus s: with
+      ! An SLS of glassy modulus g and rubbery r with an elastic body of modulus s: with
       ! y = exp(-b t), E' = s (r + d y)/(s + r + d y), whose transform is a hypergeometric series;
       ! in the limit s -> infinity it is that of the SLS, for s = 1e9 g to nine digits
       g = 15.0e6_wp/0.75_wp
@@ -301,7 +301,7 @@ contains
       call check(s > g, "the hard one is harder")
    end subroutine test_pair
 
-   !> Integral of an SLS beside an elastic body, long after it has relaxed and before: with
+   !> Integral of an SLS with an elastic body, long after it has relaxed and before: with
    !> c = s + r, E' = s (1 - s/(c + d exp(-b t))), whose integral is a logarithm
    subroutine test_integral_of_pair()
       ! the modulus falls thirtyfold at b t = ln(d/c), with poles close to the real axis
@@ -400,7 +400,7 @@ contains
    end subroutine pair_of
 
    !> Check the sum of a pair of an elastic body and one that relaxes: it holds from the start
-   subroutine beside_elastic(relaxing, elastic, most, what)
+   subroutine check_with_elastic(relaxing, elastic, most, what)
       !> The one that relaxes
       class(material_t), intent(in) :: relaxing
       !> The elastic one
@@ -437,7 +437,7 @@ contains
       call other%exponentials(window, accuracy, others)
       call check_relative(others%equilibrium + sum(others%moduli), terms%equilibrium &
          + sum(terms%moduli), rounding, what//": the other way round")
-   end subroutine beside_elastic
+   end subroutine check_with_elastic
 
    !> Pairs that make no contact modulus
    subroutine test_refused_pairs()
@@ -454,9 +454,9 @@ contains
       call check(allocated(error), "a dashpot in a pair is refused")
       if (allocated(error)) call check(error%code == error_input, "as an error of the input")
       call new_contact_modulus(modulus, steel, dashpot, .false., error)
-      call check(allocated(error), "also beside an elastic body")
+      call check(allocated(error), "also with an elastic body")
       call new_contact_modulus(modulus, rigid, dashpot, .false., error)
-      call success(error, "beside a rigid body it is not")
+      call success(error, "with a rigid body it is not")
       call check_relative(modulus%viscosity(), 10.0_wp/0.75_wp, rounding, &
          "and its viscosity counts")
       call new_prony(fluid, 0.0_wp, [1.0e6_wp], [10.0_wp], 0.0_wp, error)
@@ -651,13 +651,13 @@ contains
       call check(.not. trajectory%is_stuck(fluid), "a force pushes")
       trajectory%state(col_force, 1) = -10.0_wp
       trajectory%state(col_velocity, 1) = -0.3_wp
-      call check(.not. trajectory%is_stuck(fluid), "motion is no less for a force that pulls")
+      call check(.not. trajectory%is_stuck(fluid), "a tensile force does not count as less motion")
       trajectory%state(:, 1) = 0.0_wp
       trajectory%state(col_sphere, 1) = indentation
       call check(trajectory%is_stuck(solid), "in a plate that goes with the sphere")
    end subroutine test_stuck
 
-   !> A sphere on a Maxwell fluid beside a spring
+   !> A sphere on a Maxwell fluid parallel to a spring
    subroutine build_fluid(equilibrium, mass, impact)
       real(wp), intent(in) :: equilibrium
       real(wp), intent(in) :: mass

@@ -66,7 +66,7 @@ program test_impacts
    call test_profile()
    call test_stated()
    call test_few_panels()
-   call test_fleeing()
+   call test_receding_plates()
    call test_crude_growth()
    call test_steps()
    call test_forces_inside()
@@ -118,7 +118,7 @@ contains
          //"moduli = 967486.6483755076, 1670871.1042839324, 100087.93784056098, " &
          //"times = 4.219253374202701e-06, 0.00032161661709308544, 0.0006039597793775834 /" &
          //new_line("a")//rigid)
-      ! modes that are fast beside the rebound, at the largest indentation
+      ! modes that are fast compared with the rebound, at the largest indentation
       call check_stated("a layer after the largest indentation", 1.0e-8_wp, &
          "&impact velocity = 5.4325542406298135 /"//new_line("a") &
          //"&sphere radius = 0.010900636687091549, material = 'ball', mass = 0.0136 /" &
@@ -230,9 +230,9 @@ contains
       end do
    end subroutine test_few_panels
 
-   !> Near-fluid plates that flee from the sphere: guesses at t1 in their rebounds go astray, and
+   !> Near-fluid plates, which recede from the sphere: guesses of t1 in their rebounds fail, and
    !> cost panels if nothing keeps them on the way
-   subroutine test_fleeing()
+   subroutine test_receding_plates()
       integer, parameter :: count = 5
       !> Velocity, thickness, alpha and beta
       character(len=*), parameter :: given(4, count) = reshape([character(len=9) :: &
@@ -254,11 +254,11 @@ contains
       integer :: i, j
 
       do i = 1, count
-         call build(row, "a fleeing plate", fluid(given(:, i)))
+         call build(row, "a receding plate", fluid(given(:, i)))
          do j = 1, size(asked)
             call make_ive(asked(j), ive)
             call ive%solve(row%impact, trajectory, error)
-            call success(error, "a plate that flees is solved")
+            call success(error, "a receding plate is solved")
             outcome = evaluate(row%impact, trajectory)
             call check_difference(abs(outcome%cor - cor(i)), asked(j) + digits_given, "its cor")
             call check_difference(abs(outcome%contact_time/time(i) - 1.0_wp), &
@@ -266,7 +266,7 @@ contains
             call check(trajectory%steps <= most_steps(i), "in few panels")
          end do
       end do
-   end subroutine test_fleeing
+   end subroutine test_receding_plates
 
    !> A rigid sphere on a nearly fluid plate
    function fluid(given) result(text)
@@ -284,7 +284,7 @@ contains
          //"glassy_modulus = 15e6, alpha = "//given(3)//", beta = "//given(4)//" /"//new_line("a")
    end function fluid
 
-   !> A plate that flees, in whose rebound a panel is crude enough to show a contact that grows
+   !> A receding plate; in its rebound a panel is coarse enough to show a contact that grows
    !> again until it has been halved more than once
    subroutine test_crude_growth()
       character(len=*), parameter :: text = &
@@ -296,10 +296,10 @@ contains
          //"&material name = 'b', model = 'sls', density = 1100.0, poisson_ratio = 0.45, " &
          //"glassy_modulus = 6.094e6, alpha = 6.406e-7, beta = 1.30781e6 /"//new_line("a")
 
-      call check_against_finer("a fleeing plate", text, [1.0e-6_wp, 1.0e-10_wp])
+      call check_against_finer("a receding plate", text, [1.0e-6_wp, 1.0e-10_wp])
    end subroutine test_crude_growth
 
-   !> Forces inside of the panels count where a plate flees: the energy of the waves feels them
+   !> Forces inside of the panels count where a plate recedes: the energy of waves depends on them
    subroutine test_forces_inside()
       real(wp), parameter :: wave_energy = 0.656450792420_wp, asked = 1.0e-8_wp
       type(row_t) :: row
@@ -308,18 +308,18 @@ contains
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
 
-      call build(row, "a fleeing plate", fluid([character(len=20) :: "7.023165577829588", &
+      call build(row, "a receding plate", fluid([character(len=20) :: "7.023165577829588", &
          "0.017107128185880213", "0.2733305844872772", "2715758.37168038"]))
       call make_ive(asked, ive)
       call ive%solve(row%impact, trajectory, error)
-      call success(error, "a plate that flees is solved")
+      call success(error, "a receding plate is solved")
       outcome = evaluate(row%impact, trajectory)
       call check_difference(abs(outcome%wave_energy - wave_energy)/outcome%initial_energy, &
          ive_share(8)*asked, "the energy of its waves")
    end subroutine test_forces_inside
 
    !> Steps of product integration: as few as the accuracy takes where alpha' of a frozen plate is
-   !> not resolved, enough where a plate that flees ends the contact within one
+   !> not resolved, enough where a receding plate ends the contact within one
    subroutine test_steps()
       character(len=*), parameter :: spike = &
          "&impact velocity = 0.16 /"//new_line("a") &
@@ -344,7 +344,7 @@ contains
       call success(error, "a spike of alpha' is solved")
       call check(trajectory%steps <= 1000, "without resolving it")
 
-      call build(row, "a fleeing plate", &
+      call build(row, "a receding plate", &
          fluid([character(len=9) :: "0.2778", "0.003925", "4.055e-9", "4.063e4"]))
       call make_product(0.0_wp, 1.0e-4_wp, product)
       call product%solve(row%impact, trajectory, error)

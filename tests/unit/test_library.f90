@@ -240,7 +240,7 @@ contains
       call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error, gravity=-9.8_wp)
       call refused(error, error_input, "negative gravity")
       call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error, gravity=nan)
-      call refused(error, error_input, "gravity that is no number")
+      call refused(error, error_input, "gravity that is not a number")
       call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, empty, plate, error)
       call refused(error, error_input, "an empty contact modulus")
       call solve_impact(nothing, outcome, error)

@@ -345,7 +345,7 @@ contains
       call compare(cerf, "CERF")
    end subroutine test_fractional
 
-   !> A receding contact of power laws that are nearly dashpots, whose fast modes feel the rounding
+   !> A receding contact of power laws that are nearly dashpots, whose fast modes amplify rounding errors
    !> of the indentation at the end
    subroutine test_nearly_fluid()
       real(wp), parameter :: exponent(6) = [0.85_wp, 0.92_wp, 0.94_wp, 0.97_wp, 0.98_wp, 0.995_wp]

@@ -15,7 +15,7 @@ program test_output
    use vcor_io_path, only : check_name, directory_exists, file_exists, join_path, &
       make_directory, quoted_path
    use vcor_io_posix, only : c_text
-   use vcor_io_number, only : decimal_text
+   use vcor_io_number, only : decimal_t, longest_real, new_decimal, put_real
    use vcor_kinds, only : wp
    use vcor_version, only : version
    use vcor_test, only : check, check_contains, check_text, finish, suite
@@ -592,5 +592,21 @@ contains
       if (status /= 0) text = ""
       close(unit)
    end function content
+
+   !> A real number as `put_real` writes it
+   function decimal_text(x) result(text)
+      !> Any number, including NaN and infinity
+      real(wp), intent(in) :: x
+      !> Its text, 17 digits
+      character(len=:), allocatable :: text
+      type(decimal_t) :: decimal
+      character(len=longest_real) :: buffer
+      integer :: last
+
+      call new_decimal(decimal)
+      last = 0
+      call put_real(decimal, x, buffer, last)
+      text = buffer(:last)
+   end function decimal_text
 
 end program test_output

@@ -41,7 +41,7 @@ program test_solver
    call test_ive_accuracy()
    call test_estimates()
    call test_two_maxima()
-   call test_beside_a_fluid()
+   call test_pair_with_fluid()
    call test_fluid_plates()
    call test_immense_rate()
    call test_product_order()
@@ -176,7 +176,7 @@ contains
       end do
    end subroutine test_two_maxima
 
-   !> A plate of which next to nothing is left when it has relaxed flees from the sphere, and the
+   !> A plate that has lost nearly all its stiffness recedes from the sphere, and the
    !> contact ends long before the first step that its time scale asks for: it is seen to end, and
    !> to turn where it does, at every accuracy; or the contact lasts, and rounding in next to no
    !> force is not to keep its end from being found. References by tests/reference/impact_solver.py,
@@ -204,9 +204,9 @@ contains
             call new_sls(material, 15.0e6_wp, alpha(i), beta(i), error)
             call rigid_on_plate(material, waves_relaxing, 10.0_wp, fluid)
             fluid%law%receding = receding(i)
-            call success(error, "a plate that flees is built")
+            call success(error, "a receding plate is built")
             call run(solver, fluid, outcome)
-            call check_close(outcome%cor, cor(i), roughly, "a plate that flees")
+            call check_close(outcome%cor, cor(i), roughly, "a receding plate")
          end do
       end do
    end subroutine test_fluid_plates
@@ -235,9 +235,9 @@ contains
       end do
    end subroutine test_immense_rate
 
-   !> Eq. (1) beside a fluid, whose modulus is nothing long before its sum ends: both methods see
+   !> Eq. (1) with a fluid, whose modulus is nothing long before its sum ends: both methods see
    !> it stick, or come back all the same
-   subroutine test_beside_a_fluid()
+   subroutine test_pair_with_fluid()
       real(wp), parameter :: rate(2) = [1.0e6_wp, 1.0e3_wp]
       integer, parameter :: status(2) = [contact_sticking, contact_separated]
       real(wp), parameter :: direct_accuracy = 1.0e-6_wp
@@ -258,13 +258,13 @@ contains
          call body_on_body(fluid, solid, waves_none, 1.0_wp, two)
          call run(ive, two, outcome)
          call run(product, two, other)
-         call check(outcome%status == status(i), "beside a fluid: ive")
-         call check(other%status == status(i), "beside a fluid: direct")
+         call check(outcome%status == status(i), "with a fluid: ive")
+         call check(other%status == status(i), "with a fluid: direct")
          if (status(i) /= contact_separated) cycle
-         call check_close(outcome%cor, other%cor, direct_accuracy, "beside a fluid: both agree")
-         call check(outcome%cor_error <= direct_accuracy, "beside a fluid: the estimate")
+         call check_close(outcome%cor, other%cor, direct_accuracy, "with a fluid: both agree")
+         call check(outcome%cor_error <= direct_accuracy, "with a fluid: the estimate")
       end do
-   end subroutine test_beside_a_fluid
+   end subroutine test_pair_with_fluid
 
    !> Product integration on steps that are halved
    subroutine test_product_order()

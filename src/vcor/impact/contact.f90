@@ -1,7 +1,7 @@
 !> Contact modulus E'(t) of two bodies, Eq. (1) of Green's paper
 module vcor_impact_contact
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_pair, only : new_signed_fit, signed_fit_t, sum_beside_elastic
+   use vcor_impact_pair, only : new_signed_fit, signed_fit_t, sum_with_elastic
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
@@ -434,7 +434,7 @@ contains
       else
          return
       end if
-      call sum_beside_elastic(elastic, other, window, max(finer*accuracy, finest), terms, is_found)
+      call sum_with_elastic(elastic, other, window, max(finer*accuracy, finest), terms, is_found)
    end subroutine expand_pair
 
 end module vcor_impact_contact

@@ -33,7 +33,7 @@ module vcor_impact_pair
    implicit none
    private
 
-   public :: sum_beside_elastic, signed_fit_t, new_signed_fit
+   public :: sum_with_elastic, signed_fit_t, new_signed_fit
 
    !> Maximum number of exponentials: each takes 1 us per impact; fitting a hundred takes 6 ms
    integer, parameter :: most = 400
@@ -79,7 +79,7 @@ module vcor_impact_pair
 contains
 
    !> The contact modulus with an elastic body as a sum of exponentials
-   pure subroutine sum_beside_elastic(elastic, other, window, tolerance, terms, is_found)
+   pure subroutine sum_with_elastic(elastic, other, window, tolerance, terms, is_found)
       !> Plane-strain modulus of the elastic body [Pa], > 0
       real(wp), intent(in) :: elastic
       !> Plane-strain modulus of the other body [Pa], without dashpot
@@ -146,7 +146,7 @@ contains
       terms%equilibrium = elastic*(other%equilibrium/unit)
       allocate (terms%moduli, source=elastic*(elastic/unit)*product(1:n))
       allocate (terms%rates, source=rate(1:n))
-   end subroutine sum_beside_elastic
+   end subroutine sum_with_elastic
 
    !> Compute the data that all fits share
    pure subroutine new_signed_fit(self)

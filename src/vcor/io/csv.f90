@@ -20,10 +20,11 @@ module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
    use vcor_io_file, only : commit, create_file, output_file_t, put, write_stdout
-   use vcor_io_number, only : decimal_t, decimal_text, longest_integer, longest_real, new_decimal, &
+   use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, &
       put_integer, put_real
    use vcor_io_table, only : column_t, coordinate_row, integer_column, real_column, &
       row_count, table_t
+   use vcor_number, only : real_text
    use vcor_text, only : buffer_t
    implicit none
    private
@@ -188,7 +189,7 @@ contains
       call add_comments(head, 'title: '//table%title)
       do i = 1, size(table%facts)
          associate (fact => table%facts(i))
-            call add_comments(head, fact%name//' = '//decimal_text(fact%reals(1))//' '//fact%unit &
+            call add_comments(head, fact%name//' = '//real_text(fact%reals(1))//' '//fact%unit &
                //', '//fact%long_name)
          end associate
       end do

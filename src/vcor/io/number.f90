@@ -15,7 +15,7 @@ module vcor_io_number
    implicit none
    private
 
-   public :: decimal_t, new_decimal, put_real, put_integer, decimal_text
+   public :: decimal_t, new_decimal, put_real, put_integer
    public :: longest_real, longest_integer
 
    !> Longest text of a real number [characters]
@@ -136,22 +136,6 @@ contains
       if (number < 0) call put_text('-', buffer, last)
       call put_text(text(first:), buffer, last)
    end subroutine put_integer
-
-   !> A real number as text; slower than `put_real`, for a few numbers
-   function decimal_text(x) result(text)
-      !> Any number, including NaN and infinity
-      real(wp), intent(in) :: x
-      !> Its text, 17 digits
-      character(len=:), allocatable :: text
-      type(decimal_t) :: decimal
-      character(len=longest_real) :: buffer
-      integer :: last
-
-      call new_decimal(decimal)
-      last = 0
-      call put_real(decimal, x, buffer, last)
-      text = buffer(:last)
-   end function decimal_text
 
    !> Find the 17 digits of a number
    pure subroutine find_digits(decimal, mantissa, exponent, digits, power)
