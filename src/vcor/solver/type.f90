@@ -156,8 +156,12 @@ contains
          error%message = error%message//'; '//trim(light_plate(impact))
       else if (any(solver%settings%method == ['ive   ', 'direct']) &
                .and. solver%settings%scheme == 'product') then
-         ! the only advice about methods: it ends there, as auto has no other one to go to
-         error%message = error%message//"; method = 'auto' tries the other method, too"
+         ! the only advice about methods: it ends there, as auto has no other one to go to; it
+         ! refuses a time step
+         error%message = error%message//"; method = 'auto'"
+         if (solver%settings%time_step > 0.0_wp) &
+            error%message = error%message//' without solver.time_step'
+         error%message = error%message//' tries the other method, too'
       end if
    end subroutine solve_impact
 
