@@ -17,7 +17,8 @@ module vcor_tuning
    real(wp), parameter :: spectrum_above = 1.0_wp
    !> Lowest accuracy with which a sum is built
    real(wp), parameter :: spectrum_loosest = 1.0e-2_wp
-   !> Share of the last node in the dashpot, over the accuracy, above which what is beyond is added
+   !> Share of the first node in the constant and of the last one in the dashpot, over the accuracy,
+   !> above which what is beyond is added
    real(wp), parameter :: spectrum_tail = 1.0e-3_wp
    !> Refinements for spectra with features at unknown rates, and how much farther out in ln(l) the
    !> slow and the fast end begin with each

@@ -22,6 +22,7 @@ program test_exponential_sum
    call test_windows()
    call test_accuracy()
    call test_near_one()
+   call test_near_zero()
    call test_series()
    call test_methods()
    call test_long_contact()
@@ -161,6 +162,23 @@ contains
             "what lies beyond all rates is added")
       end do
    end subroutine test_near_one
+
+   !> Next to exponent 0 most of the spectrum lies below all rates that can be computed
+   subroutine test_near_zero()
+      real(wp), parameter :: exponent(*) = [3.0e-2_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-8_wp]
+      class(material_t), allocatable :: material
+      type(exponential_sum_t) :: terms
+      integer :: i
+
+      do i = 1, size(exponent)
+         call make("power_law", exponent(i), material)
+         call material%exponentials(1.0e-3_wp, 1.0e-10_wp, terms)
+         call check(terms%error <= 1.0e-9_wp, "what lies below all rates is added")
+         call make("mittag_leffler", exponent(i), material)
+         call material%exponentials(1.0e-3_wp, 1.0e-10_wp, terms)
+         call check(terms%error <= 1.0e-9_wp, "what lies below all rates is added")
+      end do
+   end subroutine test_near_zero
 
    !> Materials in series have the features of their spectrum where it pleases: few refinements find
    !> them, and not with twice the terms

@@ -138,7 +138,7 @@ contains
 
       ! |y| beyond which rates cannot be computed
       real(wp), parameter :: farthest = 600.0_wp
-      real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
+      real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, head, tail
       real(wp) :: ratio, run_low, run_high, beyond_peak
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
@@ -169,6 +169,7 @@ contains
       allocate (rates(last - first + 1), moduli(last - first + 1))
       terms%equilibrium = material%rubbery()
       n = 0
+      head = 0.0_wp
       tail = 0.0_wp
       ratio = exp(h)
       run_low = exp(turn_low - real(first - 1, wp)*h)
@@ -189,6 +190,7 @@ contains
          rate = exp(y + shift)
          modulus = h*slope*material%spectrum(rate, beyond_peak)
          if (rate*window < constant) then
+            if (.not. head > 0.0_wp) head = modulus
             terms%equilibrium = terms%equilibrium + modulus
          else if (rate*window > 1.0_wp/constant) then
             tail = modulus/rate
@@ -201,6 +203,9 @@ contains
       end do
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
+      ! for an exponent near 0 part of the constant lies below all rates; E gives it
+      if (head > spectrum_tail*accuracy*terms%equilibrium) terms%equilibrium = terms%equilibrium &
+         + (material%relaxation(window) - terms%value(window))
       ! for an exponent near 1 part of the dashpot lies beyond all rates; the integral of E gives it
       if (tail > spectrum_tail*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
          + (material%integral(window) - terms%integral(window))
