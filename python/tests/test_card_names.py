@@ -129,7 +129,7 @@ OLD = """** vcor card 'natural rubber, 40 Shore A, batch 17, measured in tension
 def test_units_are_not_guessed_where_the_head_is_damaged(tmp_path):
     path = tmp_path / "old.inp"
     path.write_text(OLD)
-    with pytest.raises(vcor.InputError, match="the head .* is damaged or old, expected --units"):
+    with pytest.raises(vcor.InputError, match="the head .* is damaged or old, expected units"):
         vcor.read_card(path)
     assert vcor.read_card(path, units="mm-t-s").equilibrium_modulus == pytest.approx(1e6)
 

@@ -301,12 +301,12 @@ def test_two_sweeps_that_nothing_tells_apart(tmp_path):
         curves(data)
     two = "f [Hz],E' [Pa],E'' [Pa],f [Hz],E' [Pa],E'' [Pa]\n"
     refused(tmp_path, table(HERTZ, STORAGE, LOSS, HERTZ, STORAGE / 2, LOSS / 2, head=two),
-            "found two columns of storage modulus with different numbers", "--columns")  # fmt: skip
+            "found two columns of storage modulus with different numbers", "columns=")  # fmt: skip
 
 
 def test_a_temperature_by_the_name_of_the_file(tmp_path):
     (tmp_path / "a.csv").write_text(table(HERTZ, STORAGE, LOSS, head="f [Hz],G' [Pa],G'' [Pa]\n"))
-    with pytest.raises(vcor.UsageError, match="--poisson-ratio"):
+    with pytest.raises(vcor.UsageError, match="expected poisson_ratio"):
         read_moduli(f"{tmp_path}/a.csv@20C")
     (one,) = read_moduli(f"{tmp_path}/a.csv@20C", poisson_ratio=0.5)
     assert one.attrs["temperature"] == 293.15 and np.allclose(one.loss_modulus, 3 * LOSS)
@@ -362,7 +362,7 @@ def test_labview(tmp_path):
     text = head.replace("\tNo\n", "\tOne\n") + "0.0\t1\n0.5\t2\n1.0\t1\n"
     assert np.allclose(read(tmp_path, text, name="a.lvm").time, [0, 0.5, 1.0])
     text = text.replace("\tForce\t", "\tUntitled\t")
-    refused(tmp_path, text, "'Untitled [N]'", "--columns")
+    refused(tmp_path, text, "'Untitled [N]'", "columns=")
     found = read(tmp_path, text, {"force": "Untitled"})
     assert np.allclose(found.force, [1, 2, 1])
 
@@ -377,20 +377,20 @@ def test_acceleration(tmp_path):
 # ---------------------------------------------------------------------------------- refusals
 
 BAD = {
-    "stress": ("Time [s],Stress [Pa]\n1,5\n2,4\n", [":1:", "'Stress [Pa]'", "--columns"]),
+    "stress": ("Time [s],Stress [Pa]\n1,5\n2,4\n", [":1:", "'Stress [Pa]'", "columns="]),
     "Spannung": ("Zeit [s];Spannung [Pa]\n1;5\n2;4\n", ["'Spannung [Pa]'"]),
     "bulk": ("time [s],bulk modulus [Pa]\n1,5\n2,4\n", ["'bulk modulus [Pa]'"]),
     "creep": ("time [s],Creep modulus [Pa]\n1,5\n2,4\n", ["'Creep modulus [Pa]'"]),
     "compliance": ("f [Hz],J' [1/Pa],J'' [1/Pa]\n1,5,1\n2,4,1\n", ["J'"]),
     "viscosity": ("f [Hz],Complex viscosity [Pa s]\n1,5\n2,4\n", ["'Complex viscosity"]),
     "no loss": ("f [Hz],Stress [Pa],E' [Pa]\n1,5,5\n2,6,6\n", ["loss modulus", "E''"]),
-    "no names": ("1,5,1\n2,6,1\n", ["3 columns without names", "--columns"]),
+    "no names": ("1,5,1\n2,6,1\n", ["3 columns without names", "columns with their names"]),
     "names of places": ("a,b,c\n1,5,1\n2,6,1\n", ["'b'"]),
     "bare log": ("log t,log E\n1,5\n2,4\n", ["expected log10 or ln"]),
     "unit of frequency": ("Frequency [1/s],E' [Pa],E'' [Pa]\n1,5,1\n2,6,1\n", ["Hz or rad/s"]),
     "no unit of frequency": ("frequency,storage,loss\n1,5,1\n2,6,1\n", ["no unit of 'frequency'"]),
     "Hz of omega": ("omega [Hz],E' [Pa],E'' [Pa]\n1,5,1\n2,6,1\n", ["angular frequency", "rad/s"]),
-    "unit of one": ("t [s],E\n1,5\n2,4\n", ["no unit of 'E'", "--units"]),
+    "unit of one": ("t [s],E\n1,5\n2,4\n", ["no unit of 'E'", "or units"]),
     "unit of temperature": ("f [Hz],T,E' [Pa],E'' [Pa]\n1,23,5,1\n2,23,6,1\n", ["T [C]"]),
     "capitals": ("t [s],E [MPA]\n1,5\n2,4\n", ["'MPA'", "did you mean MPa?"]),
     "milli": ("t [s],E [mPa]\n1,5\n2,4\n", ["'mPa'", "did you mean MPa?"]),
@@ -423,10 +423,10 @@ BAD = {
     "cut short": ("f,E_stor,E_loss\nHz,MPa,MPa\n0.1,24", ["no column of the loss modulus"]),
     "head only": ("t [s],E [Pa]\n", ["no numbers"]),
     "two of one name": ("f [Hz],E' [MPa],E'' [MPa],E' [MPa]\n1,2,1,3\n2,3,1,4\n",
-                        ["two columns of storage modulus", "--columns", "storage_modulus=4"]),
+                        ["two columns of storage modulus", "columns={'storage_modulus': '4'}"]),
     "compliance and tangent": ("f [Hz],Storage compliance [1/Pa],tan delta\n1,2,1\n2,3,1\n",
                                ["no column of the storage modulus"]),
-    "axes": ("Time [s],Fx [N],Fz [N]\n1,2,1\n2,3,1\n", ["--columns \"force=Fz [N]\""]),
+    "axes": ("Time [s],Fx [N],Fz [N]\n1,2,1\n2,3,1\n", ["columns={'force': 'Fz [N]'}"]),
     "moduli of both kinds": ("t [s],f [Hz],E(t) [Pa],E' [Pa],E'' [Pa]\n1,1,5,5,1\n2,2,4,6,1\n",
                              ["against time"]),
 }  # fmt: skip
@@ -473,7 +473,7 @@ def test_whatever_a_file_holds(tmp_path, content):
 
 def test_columns_that_the_user_names(tmp_path):
     text = table(OMEGA, LOSS, STORAGE, head="Kolumna (rad/s),B (Pa),A (Pa)\n")
-    refused(tmp_path, text, "--columns")
+    refused(tmp_path, text, "columns=")
     choice = {"frequency": "Kolumna", "storage": "A (Pa)", "E''": 2}
     is_the_material(read(tmp_path, text, choice))
     options = columns_option(["frequency=Kolumna (rad/s)", "storage=A,loss=B"])

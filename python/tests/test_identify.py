@@ -471,8 +471,8 @@ def test_what_is_wrong_with_a_file_is_said_with_its_column(tmp_path, text, said)
     ("words", "said"),
     [
         (["--free", "rubber.beta", "--seed", "-1"], "--seed: found -1"),
-        (["--free", "rubber.beta", "--error", "cor=-1%"], "--error cor: found -0.01"),
-        (["--free", "rubber.beta", "--error", "cor=nan"], "--error cor: found nan"),
+        (["--free", "rubber.beta", "--error", "cor=-1%"], "--error cor=-0.01: expected"),
+        (["--free", "rubber.beta", "--error", "cor=nan"], "--error cor=nan: expected"),
         (["--free", "rubber.beta", "--fix", "rubber.beta=3"], "that --fix does not give"),
         (["--free", "rubber.alpha,impact.drop_height"], "the case does not give it"),
         (["--fre", "rubber.beta"], "did you mean '--free'"),
@@ -492,7 +492,7 @@ def test_an_error_for_data_that_have_their_own_is_refused():
     data["contact_time_sigma"][3] = np.nan
     errors = {"contact_time": 0.01}
     vcor.identify(guess("sls"), data, ["rubber.alpha"], errors=errors)
-    with pytest.raises(vcor.InputError, match="cor: these data have errors of their own"):
+    with pytest.raises(vcor.InputError, match="these data have errors of their own"):
         vcor.identify(guess("sls"), data, ["rubber.alpha"], errors={**errors, "cor": 0.02})
 
 

@@ -558,7 +558,7 @@ def bad(results):
         (["few.csv"], 3, "found no numbers"),
         (["sweep.h5", "words.csv"], 3, "in column 'cor', expected a number"),
         (["no_range.nml"], 3, "valid_from"),
-        (["sweep.h5", "--legend", "a", "--legend", "b"], 2, "found 2 --legend for 1"),
+        (["sweep.h5", "--legend", "a", "--legend", "b"], 2, "--legend: found 2 for 1"),
         (["sweep.h5", "--legend", "a\tb"], 2, "control character"),
         (["sweep.h5", "a\nb.h5"], 2, "control character"),
         (["sweep.h5", "--range", "x=1"], 2, r"expected a range such as x=0\.1:10"),
@@ -725,7 +725,7 @@ def test_labels_of_axes_and_points(tmp_path):
     assert (made.axes[0].get_xlabel(), made.axes[0].get_ylabel()) == ("speed", "e")
     curve = made.axes[0].lines[0]
     assert curve.get_marker() in ("", "None", None)
-    with pytest.raises(vcor.UsageError, match="1 --label for 0"):
+    with pytest.raises(vcor.UsageError, match="labels: found 1 for 0"):
         vcor.plot.figure([sweep], labels="by film")
     with pytest.raises(vcor.UsageError, match="the panels have several"):
         vcor.plot.figure([sweep], quantities=["cor", "max_force"], ylabel="e")
@@ -733,7 +733,7 @@ def test_labels_of_axes_and_points(tmp_path):
 
 def test_moduli_at_several_temperatures_are_refused(results):
     data = ROOT / "examples/identification/dma.csv"
-    with pytest.raises(vcor.InputError, match="13 temperatures.*vcor master"):
+    with pytest.raises(vcor.InputError, match="13 temperatures.*vcor.master"):
         vcor.plot.figure([results / "sls_material.h5", data])
 
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
 from ._library import Error, FileError, UsageError, __version__, printable
-from ._text import name_flaw, near
+from ._text import OPTIONS, name_flaw, near
 
 FORMATS = ("svg", "pdf", "png")
 
@@ -43,8 +43,14 @@ class Parser(argparse.ArgumentParser):
         raise UsageError(f"{message} ({self.prog} --help says more)")
 
     def options(self, arguments: Sequence[str] | None) -> argparse.Namespace:
-        """Options of the command line, without control characters in any."""
+        """Options of the command line, without control characters in any.
+
+        From here on messages name them in place of the parameters of Python.
+        """
         options = self.parse_args(arguments)
+        OPTIONS.set(
+            {one.dest: one.option_strings[0] for one in self._actions if one.option_strings}
+        )
         for word in vars(options).values():
             for text in [word] if isinstance(word, str) else word if isinstance(word, list) else []:
                 if printable(text) != text:
@@ -75,6 +81,7 @@ def _note(message: Warning | str, *_: Any) -> None:
 @contextlib.contextmanager
 def one_line() -> Iterator[None]:
     """Errors and warnings are lines on stderr; an error leaves with the code of the program."""
+    spoken = OPTIONS.set(OPTIONS.get())
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _note  # type: ignore[assignment]
@@ -87,6 +94,8 @@ def one_line() -> Iterator[None]:
         sys.exit(FileError.code)
     except KeyboardInterrupt:
         sys.exit(130)
+    finally:
+        OPTIONS.reset(spoken)
 
 
 def _print(text: str) -> None:

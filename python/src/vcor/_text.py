@@ -5,12 +5,58 @@ from __future__ import annotations
 import difflib
 import math
 import os
+import shlex
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
 from ._library import Error, FileError, UsageError, __version__
+
+#: Options of the command that runs, by the parameters that they give; empty: Python calls
+OPTIONS: ContextVar[Mapping[str, str]] = ContextVar("OPTIONS", default={})  # noqa: B039
+
+
+def option(name: str, value: Any = None) -> str:
+    """A parameter as the user writes it: an option of the command that runs, else in Python.
+
+    Parameters
+    ----------
+    name
+        The parameter of a function, `dest` of the option.
+    value
+        What to add: a value, or a mapping as `fix={"rubber.beta": 1e3}` has it; `...` is for
+        one that the user knows, a boolean is an option without a value.
+    """
+    known = OPTIONS.get()
+    if name not in known:
+        return name if value is None else f"{name}={_python(value)}"
+    words = [known[name]]
+    if isinstance(value, Mapping):
+        words += [f"{key}={_plain(one)}" for key, one in value.items()]
+    elif value is not None and not isinstance(value, bool):
+        words.append(_plain(value))
+    return " ".join(map(shlex.quote, words))
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, tuple):
+        return ":".join(map(_plain, value))
+    return "VALUE" if value is ... else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _python(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key!r}: {_python(one)}' for key, one in value.items())}}}"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_python, value))})"
+    return "..." if value is ... else f"{value:g}" if isinstance(value, float) else repr(value)
+
+
+def command(name: str) -> str:
+    """A command of the program as the user calls it, in the shell or in Python."""
+    return f"vcor {name}" if OPTIONS.get() else f"vcor.{name}"
 
 
 def near(word: str, known: Iterable[str]) -> str:
@@ -82,12 +128,14 @@ def place(
             "the name of a folder ends with a slash"
         )
     elif ending and path.suffix[1:] != ending:
-        raise UsageError(f"the name '{output}' ends with {path.suffix}, but --format is {ending}")
+        raise UsageError(f"the name '{output}' ends with {path.suffix}, but {option('format')} is "
+                         f"{ending}")  # fmt: skip
     if flaw := name_flaw(path.name):
         raise FileError(f"cannot write the file: the name {flaw}, expected another name")
     for name in inputs:
         if path.resolve() == Path(name).resolve():
-            raise UsageError(f"{path} would replace a file that is read, expected another --output")
+            raise UsageError(f"{path} would replace a file that is read, expected another "
+                             f"{option('output')}")  # fmt: skip
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except FileExistsError:

@@ -33,6 +33,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 from . import _command, _text
 from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, printable, whole
+from ._text import command, option
 from .case import Case, listed
 from .materials.data import (
     Columns,
@@ -162,20 +163,22 @@ def figure(
     legends = listed(legends)
     if legends and len(legends) != len(results):
         raise UsageError(
-            f"found {len(legends)} --legend for {len(results)} file(s) of results, expected one "
-            "for each"
+            f"{option('legends')}: found {len(legends)} for {len(results)} file(s) of "
+            "results, expected one for each"
         )
     labels = listed(labels)
     if labels and len(labels) != len(data):
-        raise UsageError(f"found {len(labels)} --label for {len(data)} file(s) of measured points, "
-                         "expected one for each")  # fmt: skip
+        raise UsageError(f"{option('labels')}: found {len(labels)} for {len(data)} file(s) of "
+                         "measured points, expected one for each")  # fmt: skip
     for one, text in zip(data, labels, strict=False):
         one.attrs["label"] = text
     kind = kind or results[0].kind()
     if kind not in KINDS:
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
     if quantities and kind not in ("sweep", "map"):
-        raise UsageError(f"found --quantity, which a figure of kind {kind} does not show")
+        raise UsageError(
+            f"found {option('quantities')}, which a figure of kind {kind} does not show"
+        )
     _check_axes(log, ranges or {}, levels)
     if width is not None and not _WIDTHS[0] <= numbers(width, "width", 0, "cm") <= _WIDTHS[1]:
         raise UsageError(f"found a width of {width:g} cm, expected {_WIDTHS[0]:g} to "
@@ -221,7 +224,7 @@ def _check_axes(
 ) -> None:
     """Refuse axes that there are not, and ranges and levels that are none."""
     if log is not None and (not isinstance(log, str) or set(log) - set("xyz")):
-        raise UsageError(f"--log {log}: expected letters among x, y, z, or none")
+        raise UsageError(f"{option('log', log)}: expected letters among x, y, z, or none")
     for name, ends in ranges.items():
         with contextlib.suppress(TypeError, ValueError):
             low, high = (None if end is None else float(end) for end in ends)
@@ -272,7 +275,7 @@ def _history(wishes: _Wishes) -> Figure:
     }
     one = len(courses) == 1
     if one and wishes.given:
-        raise UsageError("found --legend, which a history of one file does not show")
+        raise UsageError(f"found {option('legends')}, which a history of one file does not show")
     made, axes = _new(wishes, 1 if one else 3, 1 if one else 3)
     for i, (result, course) in enumerate(zip(wishes.results, courses, strict=True)):
         end, cor = factor * course["end"], result.number("cor")
@@ -347,7 +350,7 @@ def _moduli(wishes: _Wishes) -> Figure:
         if count > 1:
             raise InputError(
                 f"{one.attrs['path']}: found moduli at {count} temperatures, expected one, or the "
-                "master curve of vcor master"
+                f"master curve of {command('master')}"
             )
     columns = ("relaxation_modulus", "storage_modulus", "loss_modulus", "loss_tangent")
     curves = []
@@ -372,7 +375,7 @@ def _moduli(wishes: _Wishes) -> Figure:
     factor, unit = _scale("Pa", *[both[1].storage_modulus.values for _, both, _ in curves])
     single = len(curves) == 1
     if single and wishes.given:
-        raise UsageError("found --legend, which moduli of one material do not show")
+        raise UsageError(f"found {option('legends')}, which moduli of one material do not show")
     made, axes = _new(wishes, 2 if single else 4, 2)
     if single:
         axes = [axes[0], axes[1], axes[1], axes[1].twinx()]
@@ -434,7 +437,7 @@ def _sweep(wishes: _Wishes) -> Figure:
         if len(values) > MOST:
             raise InputError(
                 f"{result.path}: a curve for each of the {len(values)} values of '{other}' is more "
-                f"than the {MOST} that can be told apart; expected --kind map"
+                f"than the {MOST} that can be told apart; expected {option('kind', 'map')}"
             )
         factor, unit = _scale(values.attrs.get("units", ""), values.values)
         for value in values:
@@ -500,7 +503,7 @@ def _map(wishes: _Wishes) -> Figure:
     """Quantities over two parameters, as filled contours with labelled lines."""
     result, names = wishes.results[0], wishes.quantities
     if len(wishes.results) > 1 or wishes.given:
-        found = "--legend" if wishes.given else f"{len(wishes.results)} of them"
+        found = option("legends") if wishes.given else f"{len(wishes.results)} of them"
         raise UsageError(f"a map shows one file of results without a legend, found {found}")
     if len(result.axes) != 2 or min(result.summary.sizes[axis] for axis in result.axes) < 2:
         raise InputError(
@@ -773,8 +776,9 @@ def _adjust(made: Figure, wishes: _Wishes) -> None:
                 (low, high), ends = sorted(which.get_view_interval()), which.get_data_interval()
                 if high < min(ends) or low > max(ends):
                     raise UsageError(
-                        f"--range {letter}={low:g}:{high:g}: nothing is there, {letter} is "
-                        f"{which.label.get_text()} from {min(ends):.4g} to {max(ends):.4g}"
+                        f"{option('ranges', {letter: (low, high)})}: nothing is there, "
+                        f"{letter} is {which.label.get_text()} from {min(ends):.4g} to "
+                        f"{max(ends):.4g}"
                     )
             _label_decades(which)
     for legend in made.legends:
@@ -840,17 +844,28 @@ def _parser() -> _command.Parser:
     add = parser.add_argument
     add("files", nargs="+", metavar="FILE", help="results (.h5, .nml), and measured points (.csv)")
     add("--kind", choices=KINDS, help="kind of figure; default: what the first file is for")
-    add("--quantity", metavar="NAME,NAME", help="columns for sweeps and maps; default: cor")
-    add("--legend", metavar="TEXT", action="append", default=[], help="a text for each result")
-    add("--label", metavar="TEXT", action="append", default=[],
+    add(
+        "--quantity",
+        dest="quantities",
+        metavar="NAME,NAME",
+        help="columns for sweeps and maps; default: cor",
+    )
+    add("--legend", dest="legends", metavar="TEXT", action="append", default=[],
+        help="a text for each result")  # fmt: skip
+    add("--label", dest="labels", metavar="TEXT", action="append", default=[],
         help="a text for each file of measured points")  # fmt: skip
     add("--xlabel", metavar="TEXT", help="label of the axis x, where all panels have the same")
     add("--ylabel", metavar="TEXT", help="label of the axis y, where all panels have the same")
     add("--log", metavar="AXES", help="logarithmic axes: x, y, z (levels), xy ..., or none")
-    add("--range", metavar="AXIS=FROM:TO", action="append", default=[],
+    add("--range", dest="ranges", metavar="AXIS=FROM:TO", action="append", default=[],
         help="range of x, y or the levels z, in the unit that is drawn; repeatable")  # fmt: skip
     add("--levels", metavar="N|Z,Z,...", help="levels of a map, or about how many; default: 8")
-    add("--no-hatch", action="store_true", help="do not hatch where the model does not hold")
+    add(
+        "--no-hatch",
+        dest="hatch",
+        action="store_false",
+        help="do not hatch where the model does not hold",
+    )
     add("--width", metavar="CM", type=_width,
         help=f"width in cm, or such as 85mm or 3.35in; default: {COLUMN} or {PAGE}")  # fmt: skip
     add("--output", metavar="PATH", help="NAME.svg, .pdf or .png, or a folder")
@@ -864,10 +879,10 @@ def _parser() -> _command.Parser:
 def _settings(options: Any) -> dict[str, Any]:
     """Arguments of `figure` that differ from their defaults."""
     settings: dict[str, Any] = {"kind": options.kind, "width": options.width}
-    settings["quantities"] = options.quantity.split(",") if options.quantity else None
-    settings["legends"], settings["labels"] = options.legend or None, options.label or None
+    settings["quantities"] = options.quantities.split(",") if options.quantities else None
+    settings["legends"], settings["labels"] = options.legends or None, options.labels or None
     settings["xlabel"], settings["ylabel"] = options.xlabel, options.ylabel
-    settings["hatch"] = False if options.no_hatch else None
+    settings["hatch"] = None if options.hatch else False
     if options.log is not None:
         settings["log"] = "" if options.log == "none" else options.log or "none"
     try:
@@ -876,7 +891,7 @@ def _settings(options: Any) -> dict[str, Any]:
             levels = [float(level) for level in word.split(",")]
             settings["levels"] = int(word) if word.isdigit() else levels
         ranges = {}
-        for word in options.range:
+        for word in options.ranges:
             name, _, ends = word.partition("=")
             low, high = (float(end) if end else None for end in ends.split(":"))
             ranges[name] = (low, high)

@@ -27,6 +27,7 @@ from ._library import (
     whole,
     within,
 )
+from ._text import option
 from .case import MOST_POINTS, Case, as_case, listed, with_material
 from .materials.advice import percent, product
 from .materials.limits import UNDETERMINED
@@ -68,7 +69,7 @@ class Spread:
 
     @classmethod
     def read(cls, case: Case, address: str, text: str | float) -> Spread:
-        """Distribution of a parameter as `--vary ADDRESS=TEXT` has it.
+        """Distribution of a parameter as `vary={address: text}` has it.
 
         `5%` is the standard deviation of its logarithm (log-normal), `0.1` one in its own unit
         (normal), `A:B` a uniform distribution from A to B; a number is as with `%`.
@@ -112,20 +113,23 @@ class Spread:
         # what a fit has brought to 0 stays there: it has no logarithm
         kept = np.flatnonzero((np.diag(covariance) > 0) & (values > 0))
         if not kept.size:
-            raise InputError("--covariance: found no parameter > 0 with a standard error")
+            raise InputError(
+                f"{option('covariance')}: found no parameter > 0 with a standard error"
+            )
         scaled = covariance[np.ix_(kept, kept)] / np.outer(values[kept], values[kept])
         weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
         if weights.min() < -1e-8 * weights.max():
-            raise InputError("--covariance: the matrix is not positive")
+            raise InputError(f"{option('covariance')}: the matrix is not positive")
         if weights[-1] > UNDETERMINED**2:
             names = [fit.addresses[i] for i in kept]
             raise NumericalError(
-                f"--covariance: the fit does not determine {product(names, vectors[:, -1])}, which "
-                f"has a standard error of {percent(math.sqrt(weights[-1]))}: fix a parameter of it "
-                "in the fit, and give that with --vary ADDRESS=LOW:HIGH"
+                f"{option('covariance')}: the fit does not determine "
+                f"{product(names, vectors[:, -1])}, which has a standard error of "
+                f"{percent(math.sqrt(weights[-1]))}: fix a parameter of it in the fit, "
+                f"and give that with {option('vary', {'ADDRESS': 'LOW:HIGH'})}"
             )
         if fit.note:
-            warnings.warn(f"--covariance: {fit.note}", stacklevel=3)
+            warnings.warn(f"{option('covariance')}: {fit.note}", stacklevel=3)
         if fit.group:
             case = _with_group(case, fit)
         for i in kept:
@@ -160,7 +164,7 @@ class _Fit:
     @classmethod
     def read(cls, source: Any) -> _Fit:
         """The parameters of a file or of its contents."""
-        path, named = "", "--covariance"
+        path, named = "", option("covariance")
         if not isinstance(source, Mapping):
             path = os.fspath(source)
             named += f" {path}"
@@ -182,9 +186,9 @@ class _Fit:
             addresses.append(row["name"] if "." in row["name"] else f"{name}.{row['name']}")
             if row.get("standard_error", 0) is None:
                 raise InputError(
-                    f"{named}: {addresses[-1]} is at its bound, without a standard error: identify "
-                    f"the others with --fix and take its interval with --vary {addresses[-1]}"
-                    "=LOW:HIGH"
+                    f"{named}: {addresses[-1]} is at its bound, without a standard error: fix it, "
+                    "identify the others, and take its interval with "
+                    + option("vary", {addresses[-1]: "LOW:HIGH"})
                 )
         n = len(rows)
         try:

@@ -33,7 +33,12 @@ def _parser() -> _command.Parser:
     add("--covariance", metavar="FIT.json", help="JSON of vcor fit or vcor identify")
     add("--samples", metavar="N", type=int, default=4096,
         help="impacts that are solved, about, at each point of a sweep; default: 4096")  # fmt: skip
-    add("--quantity", metavar="NAME,NAME", help="columns of the summary, the first is drawn")
+    add(
+        "--quantity",
+        dest="quantities",
+        metavar="NAME,NAME",
+        help="columns of the summary, the first is drawn",
+    )
     add("--seed", metavar="N", type=int, default=1, help="seed of the samples; default: 1")
     add("--threads", metavar="N", type=int, help="threads; default: one per core")
     return parser
@@ -58,7 +63,7 @@ def _work(options: argparse.Namespace) -> None:
         vary,
         covariance=options.covariance,
         samples=options.samples,
-        quantities=options.quantity.split(",") if options.quantity else USUAL,
+        quantities=options.quantities.split(",") if options.quantities else USUAL,
         seed=options.seed,
         threads=options.threads,
     )

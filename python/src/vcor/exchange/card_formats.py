@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from .._library import InputError, UsageError, printable
+from .._text import option
 from ..case import _written
 from ..materials.units import GAS
 
@@ -112,7 +113,7 @@ class Card:
         form, card = FORMATS[code], self.within(units)
         if celsius:
             if self.shift.get("shift") != "wlf":
-                raise UsageError(f"{self.name}: --celsius is for the WLF shift, "
+                raise UsageError(f"{self.name}: {option('celsius', True)} is for the WLF shift, "
                                  "expected it without: temperatures in kelvin")  # fmt: skip
             shifted = {"reference_temperature": self.constants[0] - ZERO_C}
             card = dataclasses.replace(card, shift={**card.shift, **shifted})
@@ -206,14 +207,18 @@ class Format:
         if n > self.terms:
             return f"the card holds {self.terms} terms, found {n}; expected a shorter series"
         if nu == self.forbidden or nu == 0.5 and not self.incompressible:
-            return f"the card cannot hold Poisson's ratio {nu:g}, expected --poisson-ratio 0.495"
+            return (
+                f"the card cannot hold Poisson's ratio {nu:g}, expected "
+                f"{option('poisson_ratio', 0.495)}"
+            )
         if self.dense and card.density is None:
             return "the card needs a density, expected the key density"
         if card.equilibrium_modulus == 0 and not self.fluid:
             return "the card cannot hold a fluid, expected equilibrium_modulus > 0"
         if shift and (shift not in self.shifts or "vertical_shift" in card.shift):
             what = "vertical shift" if shift in self.shifts else f"shift '{shift}'"
-            return f"the card cannot hold a {what}, expected --no-shift: at reference_temperature"
+            return (f"the card cannot hold a {what}, expected {option('use_shift', False)}: at "
+                    "reference_temperature")  # fmt: skip
         return ""
 
 
@@ -235,13 +240,13 @@ class Source:
         self.lines = [(i, line.rstrip()) for i, line in enumerate(self.text.split("\n"), 1)]
         made = head_of(self.text)
         if made is None and not self.units and re.search(r"(?i)vcor card", self.text):
-            self.fail(0, "the head that vcor wrote is damaged or old, expected --units")
+            self.fail(0, f"the head that vcor wrote is damaged or old, expected {option('units')}")
         given = made[2] if made else "SI"
         self.name = Path(self.path).stem
         if made and (title := re.search(r"(?m)^\S{1,2} material '(.*)'$", self.text)):
             self.name = title[1]
         if made and self.units not in ("", given):
-            self.fail(0, f"the card is in units {given}, found --units {self.units}")
+            self.fail(0, f"the card is in units {given}, found {option('units', self.units)}")
         self.units = self.units or given
         if self.units not in UNITS:
             raise UsageError(
@@ -252,7 +257,8 @@ class Source:
         if made:
             self.scale = made[3]
             if self.celsius and self.scale == "K":
-                self.fail(0, "the temperatures of the card are in kelvin, found --celsius")
+                self.fail(0, "the temperatures of the card are in kelvin, found "
+                             f"{option('celsius', True)}")  # fmt: skip
         scale = "degrees Celsius" if self.celsius else "kelvin"
         self.remarks = [] if made else [f"the card is read in units {self.units}, and {scale}"]
 
@@ -277,7 +283,8 @@ class Source:
             self.remarks = [
                 f"the card is read in units {self.units}",
                 f"its reference temperature, {reference:g}, is not in K: taken as degrees Celsius,"
-                f" {reference + ZERO_C:g} K; --celsius states that, --no-shift leaves it out",
+                f" {reference + ZERO_C:g} K; {option('celsius', True)} states that, "
+                f"{option('use_shift', False)} leaves it out",
             ]
             return reference + ZERO_C
         return reference
@@ -322,7 +329,8 @@ class Source:
             self.fail(0, "found no viscoelastic material")
         if self.material not in names:
             what = f"material '{self.material}'" if self.material else f"{len(names)} materials"
-            raise UsageError(f"{self.path}: found {what}, expected --material {'|'.join(names)}")
+            raise UsageError(f"{self.path}: found {what}, expected {option('material')} with one "
+                             f"of {', '.join(names)}")  # fmt: skip
         return str(self.material)
 
     def elastic(self, modulus: float | None, ratio: float | None) -> tuple[float, float]:
@@ -330,8 +338,9 @@ class Source:
         modulus = modulus or self.modulus
         ratio = self.poisson_ratio if ratio is None else ratio
         if modulus is None or ratio is None:
-            self.fail(0, "the card has no elastic constants, expected --modulus (at time zero, in "
-                         "the units of the card) and --poisson-ratio")  # fmt: skip
+            self.fail(0, f"the card has no elastic constants, expected {option('modulus')} (at "
+                         "time zero, in the units of the card) and "
+                         f"{option('poisson_ratio')}")  # fmt: skip
         return modulus, self.ratio(0, ratio)
 
     def ratio(self, line: int, value: float) -> float:
@@ -357,14 +366,15 @@ class Source:
             remarks.append(
                 "the bulk modulus of the card does not relax: its Poisson's ratio grows from "
                 f"{ratio:.6g} to {_ratio_after(ratio, rest / total):.6g}, this group has the first "
-                "at all times; --poisson-ratio gives another at the same shear moduli"
+                f"at all times; {option('poisson_ratio')} gives another at the same shear moduli"
             )
         elif given is None and ratio < 0.5 and not (len(shear) == len(bulk) and all(
             abs(a / total - b) <= _SAME * b and abs(s - t) <= _SAME * t
             for (a, s), (b, t) in zip(shear, bulk, strict=True)
         )):
             self.fail(line, "shear and bulk moduli relax in different ways: Poisson's ratio is "
-                            "not constant, expected --poisson-ratio for the shear moduli alone")
+                            f"not constant, expected {option('poisson_ratio')} for the shear "
+                            "moduli alone")
         shift = dict(shift or {}) if self.use_shift else {}
         remarks += [str(shift.pop("remark"))] if "remark" in shift else []
         ratio = ratio if given is None else given
@@ -498,7 +508,8 @@ def _read_abaqus(source: Source) -> Card:
         physical = found["PHYSICAL CONSTANTS"][2] if "PHYSICAL CONSTANTS" in found else {}
         law, gas = options.get("DEFINITION", "WLF"), _gas(source.units)
         if law not in ("WLF", "ARRHENIUS"):
-            source.fail(i, f"found DEFINITION={law}, expected WLF or ARRHENIUS; or --no-shift")
+            source.fail(i, f"found DEFINITION={law}, expected WLF or ARRHENIUS; or "
+                           f"{option('use_shift', False)}")  # fmt: skip
         reference, *values = rows("TRS", 3 if law == "WLF" else 2)[0]
         stated = physical.get("ABSOLUTEZERO")
         if law == "ARRHENIUS":
@@ -596,8 +607,8 @@ def _read_ansys(source: Source) -> Card:
         elif what == "TB":
             current, at = [], 0
             if label in ("PRON", "SHIF", "HYPE"):
-                option = words[5].upper()
-                kind = option[:4] if label == "PRON" else f"{label} {option}"
+                word = words[5].upper()
+                kind = word[:4] if label == "PRON" else f"{label} {word}"
                 tables[number, kind] = i, source.number(i, words[4]), current
         elif what == "TBDATA":
             # without a location it goes on after the last one
@@ -630,8 +641,8 @@ def _read_ansys(source: Source) -> Card:
         for (number, kind), (line, _, texts) in tables.items():
             if number != name or not kind.startswith("HYPE"):
                 continue
-            if (option := kind.partition(" ")[2]) not in ("NEO", "NEOHOOKEAN"):
-                source.fail(line, f"found TB,HYPER of kind {option or 'none'}, expected NEO with "
+            if (solid := kind.partition(" ")[2]) not in ("NEO", "NEOHOOKEAN"):
+                source.fail(line, f"found TB,HYPER of kind {solid or 'none'}, expected NEO with "
                                   "mu and d, or MP,EX")  # fmt: skip
             if constant("EX") is not None:
                 source.fail(line, "found TB,HYPER and MP,EX, expected one of them")
@@ -646,7 +657,8 @@ def _read_ansys(source: Source) -> Card:
             wlf = kind == "SHIF WLF"
             if not wlf and kind != "SHIF TN":
                 source.fail(line, f"found TB,SHIFT of kind {kind[5:]}, of which the meaning is not "
-                               "in the card; expected WLF or TN, or --no-shift")  # fmt: skip
+                                  "in the card; expected WLF or TN, or "
+                                  f"{option('use_shift', False)}")  # fmt: skip
             values = [source.number(line, text, sums=True) for text in texts]
             if len(values) != (3 if wlf else 2):
                 source.fail(line, f"found {len(values)} constants of TB,SHIFT")
@@ -885,7 +897,7 @@ def _read_comsol(source: Source) -> Card:
 
 
 _SHIFTS = {"wlf": "", "arrhenius": ""}
-_MIXED = "hybrid or mixed elements, or --poisson-ratio 0.495"
+_MIXED = "hybrid or mixed elements, or Poisson's ratio 0.495"
 #: Formats by name
 FORMATS = {
     "abaqus": Format("** ", _write_abaqus, _read_abaqus, _SHIFTS, dense=False,

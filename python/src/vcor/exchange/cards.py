@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import _command, _text
 from .._library import InputError, NumericalError, UsageError, numbers, whole, within
+from .._text import option
 from ..case import MOST_POINTS, Case, number
 from ..sources import IMPACT, material_case
 from .card_formats import FORMATS, UNITS, Card, Source, Terms, head_of
@@ -69,10 +70,12 @@ def card(
         No card holds the material, or no sum of so many terms is accurate enough.
     """
     if poisson_ratio is not None:
-        within(poisson_ratio, "--poisson-ratio", -1, 0.5)
-    whole(terms, "terms", 1, MOST_POINTS)
+        within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
+    whole(terms, option("terms"), 1, MOST_POINTS)
     if not 0 < numbers(accuracy, "accuracy", 0, "a number") < 1:
-        raise UsageError(f"found --accuracy {accuracy:g}, expected more than 0 and less than 1")
+        raise UsageError(
+            f"found {option('accuracy', accuracy)}, expected more than 0 and less than 1"
+        )
     has_impact = True
     if isinstance(case, Case):
         case = case.copy()
@@ -118,7 +121,7 @@ def card(
             band = of("valid_from"), of("valid_to")
         if band is None:
             if not has_impact:
-                raise UsageError(f"{case.name}: expected --band FROM:TO, there is no impact")
+                raise UsageError(f"{case.name}: expected {option('band')}, as there is no impact")
             # the shift of the card takes it back to the temperature of the impact
             impact, factor = case, case.material(material).time_factor()
             if not use_shift and factor != 1:
@@ -127,7 +130,7 @@ def card(
             try:
                 contact = float(impact.solve(quantities=["contact_time"])["contact_time"]) / factor
             except NumericalError as error:
-                raise UsageError(f"{error}; expected --band FROM:TO for the card") from None
+                raise UsageError(f"{error}; expected {option('band')} for the card") from None
             band = _BAND[0] * contact, _BAND[1] * contact
         equilibrium, found, misfit = _sum(case, material, band, accuracy, terms)
         remarks = [f"{len(found)} exponentials in place of model {model}: E(t) to {misfit:.1g} "
@@ -158,7 +161,8 @@ def _sum(
     ends = numbers(band, "band", 1, "two times [s]")
     if ends.shape != (2,) or not 1e-30 <= ends[0] < ends[1] <= 1e30:
         found = ":".join(f"{end:g}" for end in np.atleast_1d(ends))
-        raise UsageError(f"found --band {found}, expected 1e-30 <= FROM < TO <= 1e30")
+        raise UsageError(f"{option('band')}: found {found}, expected two times [s] that rise, from "
+                         "1e-30 to 1e30")  # fmt: skip
     first, last = ends
     t = np.geomspace(first, last, int(_POINTS * np.log10(last / first)) + 2)
     # at the reference temperature, whatever that of the impact is
@@ -185,8 +189,8 @@ def _sum(
             return float(found[0]), [term for term in kept if term[0] > 0], error
     raise InputError(
         f"{case.name}: sums of {most} exponentials follow '{material}' to {best:.1g} from "
-        f"{first:.3g} to {last:.3g} s, wanted {accuracy:g}; expected a shorter --band, another "
-        "--accuracy, or a card with more terms"
+        f"{first:.3g} to {last:.3g} s, wanted {accuracy:g}; expected a shorter "
+        f"{option('band')}, another {option('accuracy')}, or a card with more terms"
     )
 
 
@@ -228,16 +232,16 @@ def read_card(
         The material in SI units; `str` of it is a &material group.
     """
     if poisson_ratio is not None:
-        within(poisson_ratio, "--poisson-ratio", -1, 0.5)
+        within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
     if modulus is not None:
-        within(modulus, "modulus", 0, math.inf)
+        within(modulus, option("modulus"), 0, math.inf)
     text = _text.read_text(path)
     if code is None and (head := head_of(text)):
         code = head[1]
     if code is None:
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
     if code not in FORMATS:
-        expected = f"expected --for, one of {', '.join(FORMATS)}"
+        expected = f"expected {option('code')}, one of {', '.join(FORMATS)}"
         if code is None:
             raise InputError(f"{os.fspath(path)}: found no card, {expected}")
         raise UsageError(f"unknown program '{code}', {expected}")
@@ -248,7 +252,8 @@ def read_card(
     except InputError:
         raise
     except (ArithmeticError, ValueError):
-        source.fail(0, "its numbers are beyond the range of vcor, expected a card in other --units")
+        source.fail(0, "its numbers are beyond the range of vcor, expected a card in other "
+                       f"{option('units')}")  # fmt: skip
     _check(made, source)
     return made
 
@@ -289,7 +294,12 @@ def _parser() -> _command.Parser:
     add("--units", choices=UNITS, help="units of the card; default: SI")
     add("--celsius", action="store_true", help="temperatures of the card are degrees Celsius")
     add("--poisson-ratio", type=float, metavar="NU", help="another Poisson's ratio")
-    add("--no-shift", action="store_true", help="without the shift with temperature")
+    add(
+        "--no-shift",
+        dest="use_shift",
+        action="store_false",
+        help="without the shift with temperature",
+    )
     what = "times [s] where a sum of exponentials follows the model; default: those of its data, "
     add("--band", metavar="FROM:TO", help=what + "or a hundredth to twice the contact time")
     what = "largest relative error of such a sum; default: 1e-3"
@@ -316,7 +326,7 @@ def _work(options: argparse.Namespace) -> None:
         made = card(
             options.file, options.material, poisson_ratio=nu, band=_band(options.band),
             accuracy=options.accuracy, terms=min(FORMATS[options.code].terms, _MOST_TERMS) - 1 or 1,
-            use_shift=not options.no_shift,
+            use_shift=options.use_shift,
         )  # fmt: skip
         text = made.text(options.code, options.units or "SI", celsius=options.celsius)
         notes = made.notes(options.code)
@@ -324,7 +334,7 @@ def _work(options: argparse.Namespace) -> None:
         _refuse(options, "writing a card", band=None, accuracy=_ACCURACY)
         made = read_card(
             options.file, code=options.code, material=options.material, units=options.units,
-            modulus=options.modulus, poisson_ratio=nu, use_shift=not options.no_shift,
+            modulus=options.modulus, poisson_ratio=nu, use_shift=options.use_shift,
             celsius=options.celsius,
         )  # fmt: skip
         text, notes = str(made), list(made.remarks)
@@ -344,8 +354,8 @@ def _only(path: str) -> str:
     names = [name for name in names if case[f"{name}.model"] not in ("rigid", "elastic")]
     if len(names) != 1:
         known = f", one of {', '.join(names)}" if names else ""
-        raise UsageError(f"{path}: found {len(names)} materials that relax, expected --material "
-                         f"NAME{known}")  # fmt: skip
+        raise UsageError(f"{path}: found {len(names)} materials that relax, expected "
+                         f"{option('material')}{known}")  # fmt: skip
     return names[0]
 
 
@@ -353,7 +363,7 @@ def _refuse(options: argparse.Namespace, what: str, **defaults: float | None) ->
     """Refuse options that would be without effect."""
     for name, default in defaults.items():
         if getattr(options, name) != default:
-            raise UsageError(f"--{name} is for {what}")
+            raise UsageError(f"{option(name)} is for {what}")
 
 
 def _band(word: str | None) -> tuple[float, float] | None:
@@ -363,5 +373,5 @@ def _band(word: str | None) -> tuple[float, float] | None:
     try:
         first, last = map(float, word.split(":"))
     except ValueError:
-        raise UsageError(f"found --band {word}, expected FROM:TO in s") from None
+        raise UsageError(f"found {option('band', word)}, expected FROM:TO in s") from None
     return first, last

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from .._library import Floats
+from .._text import option
 from ..case import Case
 from .limits import LEAST
 from .observations import Impacts
@@ -72,7 +73,7 @@ def not_determined(problem: Problem, x: Floats, lost: Floats) -> str:
     fix = "one of them" if lost.shape[1] == 1 else f"{lost.shape[1]} of them"
     fix = fix if len(involved) > 1 else "it"
     given = f"give a {' or a '.join(helps)}, or " if helps else ""
-    return f"{problem.case.name}: {said}; {given}fix {fix} (--fix ADDRESS=VALUE)"
+    return f"{problem.case.name}: {said}; {given}fix {fix} ({option('fix', {'ADDRESS': ...})})"
 
 
 def _responds(problem: Problem, x: Floats, lost: Floats, name: str) -> bool:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._library import InputError, UsageError
+from .._text import option
 from .grid import read_grid
 from .names import read_head
 from .reader import ALIKE, Reader
@@ -156,13 +157,15 @@ def tensile(
 ) -> pd.DataFrame:
     """Moduli as tensile ones: shear moduli times 2 (1 + nu)."""
     if shear and data.attrs["shear"] is False:
-        raise UsageError(f"--shear: found tensile moduli by their names in {data.attrs['path']}")
+        raise UsageError(
+            f"{option('shear')}: found tensile moduli by their names in {data.attrs['path']}"
+        )
     if not (shear or data.attrs["shear"]):
         return data
     if poisson_ratio is None or math.isnan(poisson_ratio):
         raise UsageError(
-            f"{data.attrs['path']}: found shear moduli, expected --poisson-ratio, by which "
-            "they become tensile ones"
+            f"{data.attrs['path']}: found shear moduli, expected {option('poisson_ratio')}, by "
+            "which they become tensile ones"
         )
     found = data.copy()
     for key in found:
@@ -235,7 +238,7 @@ def columns_option(words: Sequence[str]) -> dict[str, str] | list[str] | None:
                 found[last] += f",{piece}"
             else:
                 raise UsageError(
-                    f"--columns: found '{word}', expected NAME=HEAD with a name such as "
+                    f"{option('columns')}: found '{word}', expected NAME=HEAD with a name such as "
                     "storage_modulus, frequency, temperature or cor"
                 )
     return found

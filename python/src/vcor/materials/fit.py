@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._library import Error, Floats, InputError, UsageError, numbers, printable, whole, within
-from .._text import document, near
+from .._text import command, document, near, option
 from ..case import Case, Material, _written, scalars
 from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
@@ -39,8 +39,8 @@ FLAT_SERIES, FLAT_LAW = 5e-3, 0.1
 #: Said of the standard errors of a fit to a master curve, whose points of one temperature move
 #: together, which no misfit shows
 SHIFT_NOTE = (
-    "the standard errors leave out those of the shift factors: vcor identify fits moduli and shift "
-    "at once"
+    "the standard errors leave out those of the shift factors: identify fits moduli and shift at "
+    "once"
 )
 #: Case that a material is put into to be evaluated
 _CASE = """&impact velocity = 1.0 /
@@ -204,15 +204,15 @@ def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:
     found = of_curves([curve_of(one) for one in parts], source)
     if found.law is None:
         raise InputError(
-            f"{source}: the shifts between its {len(parts)} temperatures follow no law; vcor "
-            f"master {source} writes them as a table, and NAME_master.csv for vcor fit"
+            f"{source}: the shifts between its {len(parts)} temperatures follow no law; "
+            f"{command('master')} gives them as a table, and the master curve for {command('fit')}"
         )
     at, *moduli = found.curve()
     celsius = [found.temperatures[i] - ZERO_C for i in (0, -1)]
     reference = found.reference_temperature - ZERO_C
     note = (
         f"  note: {len(parts)} curves from {celsius[0]:.4g} to {celsius[1]:.4g} C are shifted to "
-        f"{reference:.4g} C by {found.law.name} (vcor master says more)"
+        f"{reference:.4g} C by {found.law.name} ({command('master')} says more)"
     )
     return Samples(at, np.array(moduli), tuple(found.lines(""))), note
 
@@ -237,13 +237,14 @@ def fit_samples(
 ) -> Fit:  # fmt: skip
     """Fit a model to samples; errors about all of them name their source."""
     fixed = check_fixed(model, fix)
-    count = None if terms is None else whole(terms, "terms", 1, MOST_TERMS)
-    rho = None if density is None else within(density, "density", 0, 1e30)
+    count = None if terms is None else whole(terms, option("terms"), 1, MOST_TERMS)
+    rho = None if density is None else within(density, option("density"), 0, 1e30)
     nu = INCOMPRESSIBLE
     if poisson_ratio is not None:
-        nu = within(poisson_ratio, "--poisson-ratio", -1, INCOMPRESSIBLE)
+        nu = within(poisson_ratio, option("poisson_ratio"), -1, INCOMPRESSIBLE)
     if count and model != "prony":
-        raise UsageError(f"--terms is for --model prony, found --model {model}")
+        raise UsageError(f"{option('terms')} is for {option('model', 'prony')}, found "
+                         f"{option('model', model)}")  # fmt: skip
     try:
         _check(samples, model, count, fixed)
         if model == "prony":
@@ -297,7 +298,7 @@ def check_fixed(model: str, fix: Mapping[str, float] | None) -> dict[str, float]
     """Values of the parameters that are given, checked."""
     fixed = scalars(fix)
     if not isinstance(model, str):
-        raise UsageError(f"model: found {model!r:.60}, expected a text")
+        raise UsageError(f"{option('model')}: found {model!r:.60}, expected a text")
     if model not in MODELS:
         raise UsageError(f"unknown model '{model}', known: {', '.join(MODELS)}"
                          f"{near(model, MODELS)}")  # fmt: skip
@@ -306,16 +307,16 @@ def check_fixed(model: str, fix: Mapping[str, float] | None) -> dict[str, float]
     vanishing = law.vanishing if law else "equilibrium_modulus"
     for key, value in fixed.items():
         if key not in known:
-            raise UsageError(f"--fix: found '{key}', expected a parameter of model "
+            raise UsageError(f"{option('fix')}: found '{key}', expected a parameter of model "
                              f"{model}: {', '.join(known)}{near(key, known)}")  # fmt: skip
         most = law.most_exponent if law and key == "exponent" else 1e30
         if not (1e-30 <= value <= most or key == vanishing and value == 0):
             sign = ">=" if key == vanishing else ">"
-            raise UsageError(f"--fix: the value of {key} is out of range, expected a number {sign} "
-                             f"0, at most {most:g}")  # fmt: skip
+            raise UsageError(f"{option('fix')}: the value of {key} is out of range, expected a "
+                             f"number {sign} 0, at most {most:g}")  # fmt: skip
     if model == "sls" and fixed.get("alpha", 0) > fixed.get("beta", math.inf):
-        raise UsageError("--fix: found alpha above beta, expected alpha <= beta: the rubbery "
-                         "modulus is glassy_modulus*alpha/beta")  # fmt: skip
+        raise UsageError(f"{option('fix')}: found alpha above beta, expected alpha <= beta: the "
+                         "rubbery modulus is glassy_modulus*alpha/beta")  # fmt: skip
     if law and len(fixed) == len(known):
         raise UsageError("all parameters are given: nothing is there to be fitted")
     return fixed
@@ -352,8 +353,9 @@ def group_of(
 ) -> tuple[str, Material]:  # fmt: skip
     """A &material group, each key with its unit and meaning, and the material."""
     if not isinstance(name, str) or printable(name) != name or not name.strip():
-        raise UsageError(f"the name of the material: found {name!r:.60}, expected a text that can "
-                         "be read on one line; give another one with --name")  # fmt: skip
+        raise UsageError(f"the name of the material: found {name!r:.60}, expected a text that "
+                         "can be read on one line; give another one with "
+                         f"{option('name')}")  # fmt: skip
     name = name.strip()
     keys: dict[str, Any] = {"name": name, "model": model}
     if density:
@@ -367,7 +369,7 @@ def group_of(
         case = Case(_CASE.format(quoted) + f"&material name = {quoted} /\n")
     except Error as error:
         raise UsageError(f"the name of the material: {str(error).partition(': ')[2]}; give another "
-                         "one with --name") from None  # fmt: skip
+                         f"one with {option('name')}") from None  # fmt: skip
     lines = list(_lines(keys, model))
     text = "\n".join(["&material", *lines, *(f"   {key}" for key in samples.keys), "/\n"])
     case = Case(_CASE.format(quoted) + "\n".join(["&material", *lines, "/\n"]))

@@ -24,6 +24,7 @@ from .. import _command, _library, _text
 from .._differences import slopes
 from .._library import MOST_SEED, Error, Floats, NumericalError, UsageError, whole
 from .._outputs import finish
+from .._text import option
 from ..case import Case, as_case, listed, number, progress_bar, read, scalars, with_material
 from .advice import next_measurement, not_determined, probe, product
 from .data import Columns, Units, add_data_options, columns_option
@@ -245,9 +246,9 @@ def identify(
     if model:
         case, free = _with_model(case, free, model, fix, sources)
     if not free:
-        also = f" that --fix does not give, found {', '.join(fix)}" if fix else ""
+        also = f" that {option('fix')} does not give, found {', '.join(fix)}" if fix else ""
         raise UsageError(f"expected at least one free parameter{also}")
-    whole(seed, "--seed", 0, MOST_SEED)
+    whole(seed, option("seed"), 0, MOST_SEED)
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
@@ -442,11 +443,13 @@ def _with_model(
     """The case with another model for the material of the free parameters, all of it free."""
     names = materials_of(free)
     if len(names) != 1 or not all(address.startswith(f"{names[0]}.") for address in free):
-        raise UsageError("--model: the free parameters must be those of one material")
+        raise UsageError(f"{option('model')}: the free parameters must be those of one material")
     name = names[0]
     kind, _, terms = str(model).partition(":")
     if not re.fullmatch(r"prony:0*[1-9]\d?|[^:]*", str(model)):
-        raise UsageError(f"--model {model}: expected the name of a model, or such as prony:2")
+        raise UsageError(
+            f"{option('model', model)}: expected the name of a model, or such as prony:2"
+        )
     first, last = window([observations(case, one, free) for one in sources], case, name)
     times = np.geomspace(first, last, 60)
     reference = case.copy()
@@ -512,7 +515,7 @@ def _parser() -> _command.Parser:
     add("--free", metavar="ADDRESS,ADDRESS", help="parameters to be identified")
     add("--fix", metavar="ADDRESS=VALUE", action="append", default=[], help="a value that is given")
     error = "relative error of a column that has none, such as cor=1%%"
-    add("--error", metavar="NAME=VALUE", action="append", default=[], help=error)
+    add("--error", dest="errors", metavar="NAME=VALUE", action="append", default=[], help=error)
     model = "another model of the material, such as sls or prony:2; several are compared"
     add("--model", metavar="NAME,NAME", action="append", default=[], help=model)
     add("--seed", metavar="N", type=int, default=1, help="seed of the starts; default: 1")
@@ -530,7 +533,7 @@ def _work(options: argparse.Namespace) -> None:
     if options.free is None:
         raise UsageError("expected --free ADDRESS,ADDRESS, the parameters to be identified")
     free = [word.strip() for word in options.free.split(",") if word.strip()]
-    fix, errors = _pairs(options.fix, "--fix"), _pairs(options.error, "--error")
+    fix, errors = _pairs(options.fix, "--fix"), _pairs(options.errors, "--error")
     found: list[Identification] = []
     refused: list[Error] = []
     models = [word.strip() for words in options.model for word in words.split(",")]

@@ -26,6 +26,7 @@ from scipy.ndimage import minimum_filter
 from scipy.optimize import brentq
 
 from .._library import Floats, NumericalError
+from .._text import option
 from ..case import Case
 from .samples import BESIDE, Problem, Samples
 
@@ -312,8 +313,8 @@ def fit_law(model: str, fixed: Mapping[str, float], samples: Samples) -> tuple[L
     converged = _follow_bounds(problem, squares) and converged
     if not converged:
         raise NumericalError(
-            f"the fit of model {model} does not converge: give parameters with --fix, or another "
-            "model"
+            f"the fit of model {model} does not converge: give parameters with "
+            f"{option('fix')}, or another model"
         )
     states, values = problem.states, problem.values
     whole = copy.copy(problem)
@@ -326,7 +327,7 @@ def fit_law(model: str, fixed: Mapping[str, float], samples: Samples) -> tuple[L
         inverse, variance, structured = whole.scatter(whole.jacobian(x), r, free)
     except NumericalError as error:
         raise NumericalError(
-            f"{error} of model {model}: take fewer, by --fix, or another model"
+            f"{error} of model {model}: take fewer, by {option('fix')}, or another model"
         ) from None
     deviations = np.sqrt(np.diag(inverse))
     sizes = np.where(whole.unit > 0, whole.unit, values)[whole.free]

@@ -22,6 +22,7 @@ import numpy as np
 
 from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, within
+from .._text import option
 from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .units import ZERO_C
@@ -221,7 +222,7 @@ def master(
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     if poisson_ratio is not None:
-        within(poisson_ratio, "--poisson-ratio", -1, 0.5)
+        within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
     read = [
         one
         for name in names
@@ -255,7 +256,7 @@ def of_curves(
     if reference_temperature is None:
         middle = len(curves) // 2
     else:
-        within(reference_temperature, "reference_temperature", -math.inf, math.inf)
+        within(reference_temperature, option("reference_temperature"), -math.inf, math.inf)
         middle = int(np.argmin(np.abs(temperatures - reference_temperature)))
         if abs(temperatures[middle] - reference_temperature) > 3:
             slip = "; a temperature in degrees Celsius ends in C, as 25C"
@@ -320,7 +321,12 @@ def _parser() -> _command.Parser:
     add = parser.add_argument
     what = "file with a column T [C] or T [K], or FILE@-20C of one temperature"
     add("data", nargs="+", metavar="DATA", help=what)
-    add("--reference", metavar="TEMPERATURE", help="such as 20C or 293.15K; default: the middle")
+    add(
+        "--reference",
+        dest="reference_temperature",
+        metavar="TEMPERATURE",
+        help="such as 20C or 293.15K; default: the middle",
+    )
     what = "for shear moduli: Poisson's ratio, by which they become tensile ones"
     add("--poisson-ratio", type=float, metavar="NU", help=what)
     what = "whether moduli are also proportional to the temperature; default: the data tell"
@@ -337,7 +343,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
-    given = options.reference
+    given = options.reference_temperature
     reference = kelvin(given, "--reference") if given is not None else None
     ratio, vertical = options.poisson_ratio, options.vertical_shift
     found = master(

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .._library import Floats, InputError, UsageError
+from .._text import option
 from .observations import Block
 
 
@@ -30,21 +31,24 @@ class Noise:
             for name in ("value", "scale", "digit", "at", "sigma")
         )
         for name, error in errors.items():
+            said = option("errors", {name: error})
             if not 0 < error < math.inf:
-                raise UsageError(f"--error {name}: found {error:g}, expected a number > 0")
+                raise UsageError(f"{said}: expected a number > 0")
             if name not in quantity:
                 known = ", ".join(dict.fromkeys(quantity))
-                raise UsageError(f"--error {name}: the data have no such column, they are {known}")
+                raise UsageError(f"{said}: the data have no such column, they are {known}")
             if not np.isnan(sigma[np.equal(quantity, name)]).any():
-                raise UsageError(f"--error {name}: these data have errors of their own")
+                raise UsageError(f"{said}: these data have errors of their own")
         given = np.array([errors.get(name, np.nan) for name in quantity])
         self._stated = np.where(np.isnan(sigma), given * self._scale, sigma)
         missing = np.isnan(self._stated)
         if missing.any() and not missing.all():
             i = int(np.argmax(missing))
-            raise InputError(f"{sources[i]}: some data have a standard error, {quantity[i]} at "
-                             f"{at[i]:.6g} has none: give a column {quantity[i]}_sigma with a "
-                             f"number there, or --error {quantity[i]}=2%")  # fmt: skip
+            raise InputError(
+                f"{sources[i]}: some data have a standard error, {quantity[i]} at "
+                f"{at[i]:.6g} has none: give a column {quantity[i]}_sigma with "
+                f"a number there, or {option('errors', {quantity[i]: 0.02})}"
+            )
         #: Whether the scatter is to be estimated
         self.estimated = bool(missing.all())
         stated = self._scale if self.estimated else self._stated

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from .._library import Floats, NumericalError
+from .._text import option
 from .laws import Found
 from .samples import Problem, Samples
 
@@ -264,12 +265,13 @@ def _concluded(series: Series) -> Found:
     """Standard errors of a series; refused if the data do not determine its terms."""
     if not series.converged:
         raise NumericalError(
-            "the fit of a Prony series does not converge: give another number of terms with --terms"
+            "the fit of a Prony series does not converge: give another number of terms with "
+            f"{option('terms')}"
         )
     n, samples = len(series.times), series.samples
     if series.moduli.min() <= ABSENT * samples.softest:
         raise NumericalError(
-            "the data do not support so many terms: take fewer, or leave --terms out"
+            f"the data do not support so many terms: take fewer, or leave {option('terms')} out"
         )
     bound = series.vanished
     series.vanished = False
@@ -286,8 +288,8 @@ def _concluded(series: Series) -> Found:
             series.jacobian(x), series.misfits, inner & ~beside
         )
     except NumericalError as error:
-        raise NumericalError(f"{error} of model prony: take fewer, by --terms or --fix, or another "
-                             "model") from None  # fmt: skip
+        raise NumericalError(f"{error} of model prony: take fewer, by {option('terms')} or "
+                             f"{option('fix')}, or another model") from None  # fmt: skip
     deviations = np.sqrt(np.diag(inverse))
     times = np.exp(series.times)
     # moduli and times of a term follow each other

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._library import Floats, InputError, UsageError, printable
-from .._text import near
+from .._text import near, option
 from .grid import Grid, Row, is_missing, is_number, number
 from .names import ASIDE, QUANTITIES, Head, is_address, plain
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
@@ -71,7 +71,7 @@ class Reader:
         if text := self.choice.missing(tables):
             known = ", ".join(f"'{one}'" for table in tables for one in table.texts())
             raise UsageError(
-                f"--columns: {self.path} has no column '{text}', expected one of {known}"
+                f"{option('columns')}: {self.path} has no column '{text}', expected one of {known}"
             )
         if not tables:
             raise self._no_table()
@@ -116,7 +116,7 @@ class Reader:
             if "frequency" in names and times:
                 raise InputError(
                     f"{self.path}:{table.line}: found moduli against frequency and against "
-                    "time in one table, expected one of them, or --columns"
+                    f"time in one table, expected one of them, or {option('columns')}"
                 )
             return "relaxation" if times else "dynamic"
         if names & _DYNAMIC:
@@ -306,7 +306,8 @@ class Reader:
             if given and head.unit and size(given, head.si) != size(head.unit, head.si):
                 if not head.implied:
                     raise UsageError(
-                        f"--units: found {given}, but {place} says '{head.unit}' for '{head.text}'"
+                        f"{option('units')}: found {given}, but {place} says '{head.unit}' for "
+                        f"'{head.text}'"
                     )
                 unit = given
             if unit and not quantities_of(unit) and head.si == "":
@@ -335,12 +336,12 @@ class Reader:
             elif head.si == "rad/s" and missing and table.line:
                 raise InputError(
                     f"{place}: found no unit of '{head.text}', expected one of "
-                    f"{examples(head.si)} in its head, or --units"
+                    f"{examples(head.si)} in its head, or {option('units')}"
                 )
             elif missing and stated and head.si not in ("1", "", "K"):
                 raise InputError(
                     f"{place}: found no unit of '{head.text}', while other columns have one, "
-                    f"expected one of {examples(head.si)} in its head, or --units"
+                    f"expected one of {examples(head.si)} in its head, or {option('units')}"
                 )
         return found
 
@@ -350,12 +351,14 @@ class Reader:
         for unit in self.choice.free:
             if not quantities_of(unit):
                 raise UsageError(
-                    f"--units: found '{unit}', expected a unit such as Hz, rad/s, s, MPa or C"
+                    f"{option('units')}: found '{unit}', expected a unit such as Hz, rad/s, s, MPa "
+                    "or C"
                 )
         if key in self.choice.units:
             unit = self.choice.units[key]
             if head.si and size(unit, head.si) is None:
-                raise UsageError(f"--units: found '{unit}' for {key}, expected {examples(head.si)}")
+                raise UsageError(f"{option('units')}: found '{unit}' for {key}, expected "
+                                 f"{examples(head.si)}")  # fmt: skip
             return unit
         fits = [unit for unit in self.choice.free if head.si and size(unit, head.si)]
         own = size(head.unit, head.si) if head.unit else None
@@ -367,7 +370,7 @@ class Reader:
         if head.angular and usual.endswith("Hz"):
             raise InputError(
                 f"{place}: found Hz as unit of the angular frequency '{text}', expected "
-                f'rad/s, or --columns "frequency={text}" if it is one in Hz'
+                f"rad/s, or {option('columns', {'frequency': text})} if it is one in Hz"
             )
         if not head.angular and usual == "1/s" and not given:
             raise InputError(
@@ -408,8 +411,8 @@ class Reader:
                     f"{self.path}:{table.line}: found the column '{head.text}', expected one of "
                     f"velocity, rebound_velocity, drop_height, rebound_height, bounce_time, cor, "
                     f"cor_sphere, resilience, contact_time, max_force, temperature, radius, mass, "
-                    f"another column of the summary or an address{near(bare, known)}; or --columns "
-                    f'"NAME={head.text}"'
+                    f"another column of the summary or an address{near(bare, known)}; or "
+                    f"{option('columns', {'NAME': head.text})}"
                 )
 
     def _dynamic(self, frame: pd.DataFrame, table: Table) -> pd.DataFrame:
@@ -503,8 +506,9 @@ class Reader:
         row = numbers[0]
         return InputError(
             f"{self.path}:{row.line}: found {row.filled()} column{'s' * (row.filled() > 1)} "
-            "without names, expected a head above them, such as 't [s],E [Pa]', or --columns with "
-            "their names, such as time,relaxation_modulus or frequency,storage_modulus,loss_modulus"
+            "without names, expected a head above them, such as 't [s],E [Pa]', or "
+            f"{option('columns')} with their names, such as time,relaxation_modulus or "
+            "frequency,storage_modulus,loss_modulus"
         )
 
     def _incomplete(self, table: Table, kind: str) -> InputError:
@@ -524,8 +528,8 @@ class Reader:
             could = _could_be(last, _known(table))
             return InputError(
                 f"{place}: found the columns {told}, none of which is a measured quantity that is "
-                f"known; if '{last.text.strip()}' is {' or '.join(could)}, say which: --columns "
-                f'"{could[0]}={last.text.strip()}"'
+                f"known; if '{last.text.strip()}' is {' or '.join(could)}, say which: "
+                + option("columns", {could[0]: last.text.strip()})
             )
         lacks = self._lacks(table, kind)
         words = " and of the ".join(name.replace("_", " ") for name in lacks)
@@ -535,7 +539,7 @@ class Reader:
         one = fit[-1].strip() if fit else "HEAD"
         return InputError(
             f"{place}: found {told}, but no column of the {words}, expected one named as "
-            f'{names}, or --columns "{lacks[0]}={one}"'
+            f"{names}, or {option('columns', {lacks[0]: one})}"
         )
 
     def shear(self) -> bool | None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import _command
 from .._library import InputError, UsageError, within
+from .._text import command, option
 from .data import (
     Columns,
     Units,
@@ -58,10 +59,10 @@ def table(
     if data.attrs["kind"] != "relaxation":
         raise InputError(
             f"{data.attrs['path']}: found no relaxation moduli or shift factors, of which a table "
-            "is made; expected moduli against frequency to be fitted (vcor fit)"
+            f"is made; expected moduli against frequency to be fitted ({command('fit')})"
         )
     if poisson_ratio is not None:
-        data = tensile(data, within(poisson_ratio, "--poisson-ratio", -1, 0.5))
+        data = tensile(data, within(poisson_ratio, option("poisson_ratio"), -1, 0.5))
     found = curves(data)
     if temperature is not None:
         found = [one for one in found if abs(one.attrs["temperature"] - temperature) < _SAME]
@@ -69,7 +70,8 @@ def table(
         known = ", ".join(f"{one.attrs['temperature']:.2f} K" for one in curves(data)
                           if not math.isnan(one.attrs["temperature"]))  # fmt: skip
         raise UsageError(f"{data.attrs['path']}: found {len(found)} curves ({known or 'without'} "
-                         "temperatures), expected --temperature with that of one")  # fmt: skip
+                         f"temperatures), expected {option('temperature')} with that of "
+                         "one")  # fmt: skip
     (one,) = found
     name = "shear_relaxation_modulus" if data.attrs["shear"] else "relaxation_modulus"
     rows = zip(one.time, one.relaxation_modulus, strict=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from .. import _library
 from .._library import InputError, UsageError
+from .._text import option
 from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
 from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
 from .units import ZERO_C, plain_unit, size
@@ -127,7 +128,7 @@ class Choice:
         ]
 
     def missing(self, tables: Sequence[Table]) -> str:
-        """A text of --columns that no table has."""
+        """A text of `columns` that no table has."""
         for text, _ in self.columns.values():
             if not any(_matches(head, text) for table in tables for head in table.heads) and not (
                 text.isdigit() and any(0 < int(text) <= len(table.heads) for table in tables)
@@ -258,7 +259,8 @@ def _nameless(grid: Grid, run: list[Row], choice: Choice) -> Table:
     width = max(len(row.cells) for row in run)
     if len(choice.order) != width:
         raise UsageError(
-            f"--columns: found {len(choice.order)} names, but {grid.path} has {width} columns"
+            f"{option('columns')}: found {len(choice.order)} names, but {grid.path} has "
+            f"{width} columns"
         )
     heads = []
     for i, text in enumerate(choice.order):
@@ -398,14 +400,14 @@ def _one(table: Table, path: str, key: str, columns: list[Column]) -> Column:
                 f"{path}:{table.line}: found two columns of {name.replace('_', ' ')} with "
                 f"different numbers, '{first.head.text}' (column {first.index + 1}) and "
                 f"'{second.head.text}' "
-                f"(column {second.index + 1}), expected one, or --columns "
-                f'"{key}={_option(table, second)}"'
+                f"(column {second.index + 1}), expected one, or "
+                + option("columns", {key: _stated(table, second)})
             )
     return best
 
 
-def _option(table: Table, column: Column) -> str:
-    """How --columns names a column."""
+def _stated(table: Table, column: Column) -> str:
+    """How a user names a column."""
     alike = [head for head in table.heads if plain(head.text) == plain(column.head.text)]
     return column.head.text if len(alike) == 1 else str(column.index + 1)
 
