@@ -39,7 +39,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS TRUE)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3-numpy, python3-xarray, \
 python3-h5netcdf, python3-h5py | python3-h5py-serial, python3-tqdm, python3-matplotlib, \
-python3-scipy, python3-pandas, python3-openpyxl")
+python3-scipy, python3-pandas, python3-openpyxl, python3-threadpoolctl")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "The Python package vcor: cases, sweeps, histories, moduli and fits as numpy and
 xarray objects, with the same numbers as those of the program, and the commands

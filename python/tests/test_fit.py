@@ -9,6 +9,7 @@ from conftest import PAPER, ROOT
 
 import vcor
 from vcor import uncertainty_command
+from vcor.materials import fit as fit_module
 
 DATA = ROOT / "examples" / "soft_rubber_data.csv"
 
@@ -35,6 +36,21 @@ def test_a_file(program, tmp_path, settings):
         assert parameter.state in ("free", "bound") and parameter.error > 0
         assert parameter.name in found.group
     assert 0 < found.rms < 0.1
+
+
+def test_linear_algebra_on_one_thread(monkeypatch):
+    """Threads of small matrices only wait for each other, and for the processor."""
+    info = pytest.importorskip("threadpoolctl").threadpool_info
+    search, used = fit_module.fit_series, []
+
+    def watched(*given):
+        used.extend(one["num_threads"] for one in info() if one["user_api"] == "blas")
+        return search(*given)
+
+    monkeypatch.setattr(fit_module, "fit_series", watched)
+    with pytest.importorskip("threadpoolctl").threadpool_limits(2, "blas"):
+        vcor.fit(DATA)
+    assert set(used) == {1}
 
 
 def test_arrays():

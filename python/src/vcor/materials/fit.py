@@ -21,7 +21,7 @@ from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
 from .master import curve_of, of_curves
 from .prony import MOST_TERMS, fit_series
-from .samples import Samples
+from .samples import Samples, one_thread
 from .units import ZERO_C
 
 if TYPE_CHECKING:
@@ -248,11 +248,13 @@ def fit_samples(
     try:
         _check(samples, model, count, fixed)
         if model == "prony":
-            series, found = fit_series(samples, count, fixed.get("equilibrium_modulus"))
+            with one_thread():
+                series, found = fit_series(samples, count, fixed.get("equilibrium_modulus"))
             names = ["equilibrium_modulus", *["moduli", "times"] * len(series.times)]
             units = ["Pa", *["Pa", "s"] * len(series.times)]
         else:
-            _, found = fit_law(model, fixed, samples)
+            with one_thread():
+                _, found = fit_law(model, fixed, samples)
             names, units = [*LAWS[model].units], [*LAWS[model].units.values()]
     except Error as error:
         raise type(error)(f"{source}: {error}") from None

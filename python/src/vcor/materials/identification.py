@@ -44,6 +44,7 @@ from .observations import (
     velocity_of,
     window,
 )
+from .samples import one_thread
 from .search import STEP, Problem
 
 #: Errors of the impacts to those of the data, small since derivatives are differences of impacts,
@@ -254,7 +255,7 @@ def identify(
     blocks = [observations(case, source, free) for source in sources]
     if case["solver.method"] != "direct":
         sharpen(case, _deserved(blocks, scalars(errors)))
-    with progress_bar(None, None) as bar:
+    with progress_bar(None, None) as bar, one_thread():
         problem = Problem(case, free, blocks, scalars(errors), bar)
         best, limits = _determined(problem, *problem.best(seed))
         return _judged(problem, best, limits, model or "")

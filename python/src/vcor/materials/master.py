@@ -24,6 +24,7 @@ from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, within
 from .._text import option
 from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli
+from .samples import one_thread
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .units import ZERO_C
 
@@ -263,7 +264,8 @@ def of_curves(
             slip = slip if reference_temperature < COLDEST else ""
             raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, the "
                              f"nearest are at {temperatures[middle]:.2f} K{slip}")  # fmt: skip
-    found, vertical = steps_of(curves, vertical_shift)
+    with one_thread():
+        found, vertical = steps_of(curves, vertical_shift)
     if apart := tuple(one.apart for one in found if one.apart):
         more = f"; so it is at {len(apart) - 1} more pairs" if len(apart) > 1 else ""
         warnings.warn(f"{source}: {apart[0]}{more}", stacklevel=2)

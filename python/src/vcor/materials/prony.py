@@ -29,6 +29,9 @@ PER_DECADE = 8
 GOOD_ENOUGH = 5e-4
 #: If one more term reduces the misfit to this fraction, the data are a series of that number
 COMPLETION = 1e-3
+#: Relative change of the sum of squares that ends the refinement of series that are compared, which
+#: moves the criterion by no more than the number of moduli times it, and of trials of their times
+COMPARED, TRIED = 1e-6, 1e-3
 #: Steps without success that end the search: a single one may be due to a poor start
 MOST_FAILURES = 2
 #: Modulus over the smallest datum below which a term, or equilibrium, is absent
@@ -209,10 +212,10 @@ def fit_terms(spectrum: Series, terms: int, guide: Series | None = None) -> Seri
     for times in trials:
         series = spectrum.copy()
         series.start_from(np.clip(times, *spectrum.ends))
-        series.refine(1e-3, 60)
+        series.refine(TRIED, 60)
         found.append(series)
     best = min(found, key=lambda one: float(np.sum(one.misfits**2)))
-    best.refine()
+    best.refine(COMPARED)
     return best
 
 
@@ -252,6 +255,7 @@ def fit_series(samples: Samples, terms: int | None, given: float | None) -> tupl
     spectrum = spectrum_of(samples, given)
     series = fit_terms(spectrum, terms) if terms else _search(spectrum)
     while True:
+        series.refine()
         try:
             return series, _concluded(series)
         except NumericalError:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -18,6 +20,19 @@ WORST_CONDITION = 1e7
 NEGLIGIBLE, TOO_LARGE = 5e-3, math.log(2)
 #: Distance from the end of a range, in a variable, within which it is tried whether it is reached
 BESIDE = 1e-3
+
+
+def one_thread() -> AbstractContextManager[Any]:
+    """Linear algebra on one thread: matrices of fits are small, and further threads only wait.
+
+    On a busy machine they take thirty times as long. Without threadpoolctl nothing is changed.
+    """
+    try:
+        from threadpoolctl import threadpool_limits
+    except ModuleNotFoundError:
+        return nullcontext()
+    limits: AbstractContextManager[Any] = threadpool_limits(limits=1, user_api="blas")
+    return limits
 
 
 @dataclass(frozen=True)
