@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgeqp3, dgeqrf, dgesv, dorgqr, dormqr, dpotrf, dtrtrs
+   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgetrs, dorgqr, dormqr, dpotrf, dtrtrs
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -85,7 +85,7 @@ module vcor_numeric_lapack
       end subroutine dgeqrf
 
       !> Solve a general real system of linear equations
-      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+      pure subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          !> Number of equations
          integer, intent(in) :: n
@@ -104,6 +104,29 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dgesv
+
+      !> Solve a system with the triangular factors that `dgesv` has left
+      pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         !> 'N': the system itself
+         character(len=1), intent(in) :: trans
+         !> Order of the matrix
+         integer, intent(in) :: n
+         !> Number of right sides
+         integer, intent(in) :: nrhs
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> The factors, shape (lda, n)
+         real(wp), intent(in) :: a(lda, *)
+         !> Row exchanges, shape (n)
+         integer, intent(in) :: ipiv(*)
+         !> Leading dimension of `b`
+         integer, intent(in) :: ldb
+         !> Right sides, on return the solutions, shape (ldb, nrhs)
+         real(wp), intent(inout) :: b(ldb, *)
+         !> 0 on success
+         integer, intent(out) :: info
+      end subroutine dgetrs
 
       !> The first columns of Q of a QR factorisation
       pure subroutine dorgqr(m, n, k, a, lda, tau, work, lwork, info)

@@ -14,6 +14,7 @@ module vcor_solver_coupled
       col_sphere, col_sphere_velocity, col_time, contact_lasting, contact_resting, &
       contact_separated, trajectory_t
    use vcor_kinds, only : unset, wp
+   use vcor_numeric_lapack, only : dgesv
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
    use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
       march
@@ -85,11 +86,6 @@ module vcor_solver_coupled
    integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
    !> Steps of all marches of an impact, which a contact whose end is hard to find may take
    integer, parameter :: most_work = 12*most_steps
-   !> Parts of a largest value down to which a parabola is fitted: of the force, in which springs
-   !> that come into contact one by one make steps, and of the displacement
-   real(wp), parameter :: noisy = 0.97_wp, smooth = 0.999_wp
-   !> Relative error of the top of the parabola fitted to a sine down to `noisy`
-   real(wp), parameter :: parabola = 1.3e-5_wp
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp
    !> Steps to the time scale of a contact that resolve it
@@ -181,7 +177,7 @@ contains
          + impact%gravity*now%fine%time_error/impact%velocity
       trajectory%cor_error = trajectory%cor_sphere_error
       trajectory%max_force_error = distance(before%coarse_force, before%fine_force, &
-         now%coarse_force, now%fine_force)*careful + parabola*now%max_force
+         now%coarse_force, now%fine_force)*careful
       ! at first contact there is none that shorter steps would resolve
       if (trajectory%max_force_error > sharp*now%max_force .and. &
           now%time_of_max_force < early*now%contact_time .and. &
@@ -390,14 +386,14 @@ contains
       associate (a => pair%coarse, b => pair%fine)
          pair%contact_time = limit(a%contact_time, b%contact_time)
          pair%cor = limit(a%cor(impact), b%cor(impact))
-         one = peak(a%force(0:a%steps), a%dt, noisy)
-         two = peak(b%force(0:b%steps), b%dt, noisy)
+         one = peak(a%force(0:a%steps), a%dt)
+         two = peak(b%force(0:b%steps), b%dt)
          pair%coarse_force = one%value
          pair%fine_force = two%value
          pair%max_force = limit(one%value, two%value)
          pair%time_of_max_force = limit(one%time, two%time)
-         one = peak(a%z(0:a%steps), a%dt, smooth)
-         two = peak(b%z(0:b%steps), b%dt, smooth)
+         one = peak(a%z(0:a%steps), a%dt)
+         two = peak(b%z(0:b%steps), b%dt)
          pair%depth = limit(one%value, two%value)
          pair%time_of_depth = limit(one%time, two%time)
       end associate
@@ -428,13 +424,13 @@ contains
          do i = 2, 1, -1
             call run(self, impact, mesh, course, error)
             if (allocated(error) .or. course%status == course_outgrows) return
-            top(i) = peak(course%force(0:course%steps), course%dt, noisy)
+            top(i) = peak(course%force(0:course%steps), course%dt)
             mesh%steps = mesh%steps/2
          end do
          force(level) = limit(top(1)%value, top(2)%value)
       end do
       trajectory%max_force = force(1)
-      trajectory%max_force_error = abs(force(1) - force(0)) + parabola*force(1)
+      trajectory%max_force_error = abs(force(1) - force(0))
       trajectory%time_of_max_force = limit(top(1)%time, top(2)%time)
    end subroutine resolve_peak
 
@@ -449,43 +445,51 @@ contains
       limit = (4.0_wp*fine - coarse)/3.0_wp
    end function limit
 
-   !> Largest value of a series, the top of a parabola fitted around it
-   pure function peak(value, dt, high)
+   !> Largest value of a series: the top of a polynomial that is fitted around it with weights that
+   !> fall to 0 at its ends, so that the top follows the values steadily
+   pure function peak(value, dt)
       !> Values at equal steps, shape (0:)
       real(wp), intent(in) :: value(0:)
       !> Step [s]
       real(wp), intent(in) :: dt
-      !> Part of the largest value down to which it is fitted [-]
-      real(wp), intent(in) :: high
       type(peak_t) :: peak
 
-      ! part of the series on each side that is fitted at the most
-      real(wp), parameter :: part = 0.1_wp
-      real(wp) :: second, slope, mean, square, fourth, top
-      integer :: middle, reach, most, i
+      ! part of the largest value down to which it is fitted: the top of a sine is within 1e-7
+      real(wp), parameter :: high = 0.95_wp
+      integer, parameter :: degree = 4, iterations = 8
+      real(wp) :: c(0:degree), products(0:degree, 0:degree), power(0:degree), x, weight, bend
+      integer :: first, middle, last, most, i, info, pivots(degree + 1)
 
       middle = maxloc(value, 1) - 1
       peak%value = value(middle)
       peak%time = dt*real(middle, wp)
-      most = min(max(1, nint(part*real(size(value), wp))), middle, size(value) - 1 - middle)
-      do reach = most, 2, -1
-         if (min(value(middle - reach), value(middle + reach)) >= high*peak%value) exit
+      do first = middle, 1, -1
+         if (value(first - 1) <= high*peak%value) exit
       end do
-      reach = min(reach, most)
-      if (reach < 1) return
-      associate (y => value(middle - reach:middle + reach), n => real(reach, wp))
-         square = n*(n + 1.0_wp)*(2.0_wp*n + 1.0_wp)/3.0_wp
-         fourth = square*(3.0_wp*n**2 + 3.0_wp*n - 1.0_wp)/5.0_wp
-         mean = sum(y)/(2.0_wp*n + 1.0_wp)
-         slope = sum(y*[(real(i, wp), i=-reach, reach)])/square
-         second = sum(y*[(real(i, wp)**2, i=-reach, reach)]) - mean*square
-         second = second/(fourth - square**2/(2.0_wp*n + 1.0_wp))
-         if (.not. second < 0.0_wp) return
-         top = -0.5_wp*slope/second
-         if (abs(top) > n) return
-         peak%value = mean - second*square/(2.0_wp*n + 1.0_wp) + 0.5_wp*slope*top
-         peak%time = dt*(real(middle, wp) + top)
-      end associate
+      do last = middle, ubound(value, 1) - 1
+         if (value(last + 1) <= high*peak%value) exit
+      end do
+      if (first == middle .or. last == middle) return
+      most = min(degree, 2*((last - first)/2))
+      c = 0.0_wp
+      products = 0.0_wp
+      do i = first, last
+         weight = value(i)/peak%value - high
+         power = (real(i - middle, wp)/real(last - first, wp))**[0, 1, 2, 3, 4]
+         c(:most) = c(:most) + weight*value(i)*power(:most)
+         products(:most, :most) = products(:most, :most) + weight &
+            *spread(power(:most), 1, most + 1)*spread(power(:most), 2, most + 1)
+      end do
+      call dgesv(most + 1, 1, products, degree + 1, pivots, c, degree + 1, info)
+      if (info /= 0) return
+      x = 0.0_wp
+      do i = 1, iterations
+         bend = 2.0_wp*c(2) + x*(6.0_wp*c(3) + x*12.0_wp*c(4))
+         if (.not. (bend < 0.0_wp .and. abs(x) < 1.0_wp)) return
+         x = x - (c(1) + x*(2.0_wp*c(2) + x*(3.0_wp*c(3) + x*4.0_wp*c(4))))/bend
+      end do
+      peak%value = c(0) + x*(c(1) + x*(c(2) + x*(c(3) + x*c(4))))
+      peak%time = dt*(real(middle, wp) + x*real(last - first, wp))
    end function peak
 
    !> Record the course of a contact that has ended, extrapolated at the nodes of the longer steps
@@ -542,10 +546,10 @@ contains
          trajectory%final = n
          trajectory%status = contact_lasting
          if (course%rests(impact%mass*impact%gravity)) trajectory%status = contact_resting
-         top = peak(course%force(0:n), course%dt, noisy)
+         top = peak(course%force(0:n), course%dt)
          trajectory%max_force = top%value
          trajectory%time_of_max_force = top%time
-         top = peak(course%z(0:n), course%dt, smooth)
+         top = peak(course%z(0:n), course%dt)
          trajectory%max_indentation = top%value
          trajectory%time_of_max_indentation = top%time
       end associate

@@ -3,13 +3,15 @@
 !>
 !>     z(t) - h(x) = [C q](x, t) and q > 0, or z(t) - h(x) <= [C q](x, t) and q = 0
 !>
-!> The springs under contact need not be contiguous. The sphere is a part of the response that moves
+!> The springs under contact need not be contiguous. What they miss of the force, as the edge of the
+!> contact lies between two of them, is added, or the force would change by steps as springs come
+!> into contact one by one. The sphere is a part of the response that moves
 !> as a whole, 1/(m s^2), by two recurrences of the same rule in place of sums.
 module vcor_solver_coupled_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_numeric_lapack, only : dgesv
+   use vcor_numeric_lapack, only : dgesv, dgetrs
    use vcor_solver_convolution, only : dot
    use vcor_solver_coupled_kernel, only : kernel_t
    use vcor_solver_coupled_rule, only : differences, integrals
@@ -68,6 +70,10 @@ module vcor_solver_coupled_march
       real(wp), allocatable :: gap(:)
       !> Compression of the springs of this step [m], > 0 where they push
       real(wp), allocatable :: compression(:)
+      !> Forces of the hats that the springs miss at the edge of the contact [N], shape (hats)
+      real(wp), allocatable :: missing(:)
+      !> Radius of the contact [m]
+      real(wp) :: radius = 0.0_wp
       !> Number of springs up to the last that has pushed
       integer :: reach = 0
    end type balance_t
@@ -134,14 +140,17 @@ contains
             if (allocated(error)) return
             course%steps = k
             pressure(:, k) = merge(balance%compression/kernel%local(0), 0.0_wp, balance%pushes)
-            call gather(kernel, pressure(:, k), hats(n*(k - 1) + 1:n*k))
-            course%force(k) = sum(hats(n*(k - 1) + 1:n*k))
+            associate (forces => hats(n*(k - 1) + 1:n*k))
+               call gather(kernel, pressure(:, k), forces)
+               forces = forces + balance%missing
+               course%force(k) = sum(forces)
+            end associate
             lost(0) = lost(0) + per_mass*integrals(0)/differences(0)*course%force(k)
             path(0) = path(0) + (course%dt*integrals(0)/differences(0))**2/impact%mass &
                *course%force(k)
             course%velocity(k) = impact%free_velocity(real(k, wp)*course%dt) - lost(0)
             course%z(k) = impact%free_path(real(k, wp)*course%dt) - path(0)
-            course%radius(k) = edge(balance, row%x)
+            course%radius(k) = balance%radius
             if (is_bounded .and. balance%pushes(row%springs)) then
                course%status = course_outgrows
                return
@@ -194,7 +203,8 @@ contains
 
       associate (n => kernel%mesh%hats, springs => kernel%row%springs)
          allocate (self%now(n, n), source=kernel%now + sphere)
-         allocate (self%gram(n, n), self%gap(springs), self%compression(springs), source=0.0_wp)
+         allocate (self%gram(n, n), self%gap(springs), self%compression(springs), &
+            self%missing(n), source=0.0_wp)
          allocate (self%pushes(springs), source=.false.)
       end associate
    end subroutine prepare
@@ -272,7 +282,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: together = 30, most = 1000
-      real(wp) :: y(kernel%mesh%hats), system(kernel%mesh%hats, kernel%mesh%hats)
+      ! rounds after which missing forces are known, small as they are
+      integer, parameter :: enough = 2
+      real(wp) :: y(kernel%mesh%hats), more(kernel%mesh%hats)
+      real(wp) :: system(kernel%mesh%hats, kernel%mesh%hats)
       integer :: round, i, last, pivots(kernel%mesh%hats), info
       logical :: pushes
 
@@ -298,9 +311,21 @@ contains
             last = i
             if (round <= together) call change(self, kernel, i)
          end do
-         if (last == 0) return
+         if (last == 0) exit
          if (round > together) call change(self, kernel, last)
       end do
+      if (last == 0) then
+         call find_edge(self, kernel)
+         if (.not. any(self%pushes)) return
+         do round = 1, enough
+            more = matmul(self%now, self%missing)
+            call dgetrs('N', size(y), 1, system, size(y), pivots, more, size(y), info)
+            self%compression = self%gap
+            call spread_hats(kernel, -y - more, self%compression)
+            call find_edge(self, kernel)
+         end do
+         return
+      end if
       call raise(error, error_numerical, 'the springs that push in a step of the contact cannot ' &
          //'be found')
    end subroutine find_pushing
@@ -327,25 +352,35 @@ contains
       self%reach = max(self%reach, i)
    end subroutine change
 
-   !> Contact radius, where the compression of the springs passes through 0
-   pure function edge(self, x) result(radius)
-      type(balance_t), intent(in) :: self
-      !> Places of the springs [m]
-      real(wp), intent(in) :: x(:)
-      !> Radius [m]
-      real(wp) :: radius
+   !> Find the edge of the contact, where the compression, as a^2 - x^2, passes through 0, and the
+   !> forces that the springs miss: a part of the row counts with two springs or one, and not as far
+   !> as the edge
+   pure subroutine find_edge(self, kernel)
+      type(balance_t), intent(inout) :: self
+      type(kernel_t), intent(in) :: kernel
 
+      real(wp) :: decline, end
       integer :: i
 
-      radius = 0.0_wp
-      do i = size(x), 1, -1
-         if (self%pushes(i)) exit
-      end do
+      self%missing = 0.0_wp
+      self%radius = 0.0_wp
+      i = findloc(self%pushes, .true., dim=1, back=.true.)
       if (i == 0) return
-      radius = x(i)
-      if (i < size(x)) radius = radius + (x(i + 1) - x(i))*self%compression(i) &
-         /(self%compression(i) - self%compression(i + 1))
-   end function edge
+      associate (x => kernel%row%x, u => self%compression, a => self%radius, &
+                 weight => kernel%row%weight(i), hat => kernel%row%hat(i))
+         a = x(i)
+         if (i == size(x)) return
+         ! of the compression with x^2
+         decline = (u(i) - u(i + 1))/(x(i + 1)**2 - x(i)**2)
+         if (.not. decline > 0.0_wp) return
+         a = sqrt(x(i)**2 + min(max(u(i)/decline, 0.0_wp), x(i + 1)**2 - x(i)**2))
+         ! the part of this spring: what its two springs would add up to, and the rest to the edge
+         end = 0.5_wp*(x(i) + x(i - 1 + 2*modulo(i, 2)) + weight)
+         self%missing(hat:hat + 1) = kernel%row%value(:, i)*decline/kernel%local(0) &
+            *(2.0_wp/3.0_wp*(a - end)**2*(2.0_wp*a + end) &
+            + real(modulo(i, 2), wp)*weight*(a**2 - x(i + 1)**2))
+      end associate
+   end subroutine find_edge
 
    !> Compression on the axis, where the contact ends, linear in the profile of the first springs
    pure function axis_compression(self, profile) result(compression)
