@@ -235,6 +235,8 @@ def _forget_worker() -> None:
 os.register_at_fork(after_in_child=_forget_worker)
 #: Functions that end at once
 _QUICK = ("vcor_set", "vcor_get", "vcor_describe")
+#: Functions of a material, a microsecond a number at most, and for how many they end at once
+_MODULI, _FEW = ("vcor_relaxation", "vcor_complex_modulus"), 100_000
 
 
 def call(name: str, *arguments: Any) -> str:
@@ -246,7 +248,8 @@ def call(name: str, *arguments: Any) -> str:
     ]
     function = functools.partial(getattr(_library, name), *given, byref(error))
     # but after an interrupt, what it left may still keep the others waiting
-    code = function() if name in _QUICK and _worker else _interruptible(function)
+    quick = name in _QUICK or (name in _MODULI and arguments[2] <= _FEW)
+    code = function() if quick and _worker else _interruptible(function)
     message: str = error.message.decode(errors="replace")
     if code:
         raise _KINDS.get(code, Error)(message)

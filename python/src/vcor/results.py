@@ -10,9 +10,9 @@ import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import h5py
+import numpy as np
 import xarray as xr
 
 from ._library import Error, FileError, InputError
@@ -23,6 +23,8 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"
 _PATIENCE, _PACE = 5, 50_000_000
 #: Largest ratio by which the filters of HDF5 make data smaller (deflate)
 _DEFLATE = 1032
+#: Attributes of dimension scales
+_OF_SCALES = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
 
 
 def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  # noqa: A001
@@ -52,17 +54,19 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     path = os.fspath(path)
     _check(path)
     try:
-        # A file without dimension scales, which is none of vcor's, is for its readers to refuse
-        options: dict[str, Any] = {"engine": "h5netcdf", "phony_dims": "access"}
-        with xr.open_dataset(path, **options) as root:
-            attrs = dict(root.attrs)
-        with xr.open_dataset(path, group=group, **options) as data:
-            result = data.load()
+        with h5py.File(path, "r") as file:
+            attrs, found = dict(file.attrs), file.get(group)
+            if not isinstance(found, h5py.Group):
+                raise InputError(f"{path}: there is no group '{group}' of vcor in this file")
+            columns = {name: _column(one) for name, one in found.items()
+                       if isinstance(one, h5py.Dataset)}  # fmt: skip
+            axes = {name: columns.pop(name) for name in list(columns) if found[name].is_scale}
+            result = xr.Dataset(columns, axes, dict(found.attrs))
+    except Error:
+        raise
     except (
         KeyError, OSError, ValueError, TypeError, RuntimeError, AttributeError, MemoryError,
     ) as error:  # fmt: skip
-        if isinstance(error, KeyError) or "group not found" in str(error):
-            raise InputError(f"{path}: there is no group '{group}' of vcor in this file") from error
         raise FileError(f"{path}: this file cannot be read: {error}") from None
     if len(shapes := {one.dims for one in result.data_vars.values()}) > 1:
         found = " and ".join(str(one) for one in sorted(shapes))
@@ -71,6 +75,23 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)
     return result.assign_attrs(attrs | dict(result.attrs))
+
+
+def _column(one: h5py.Dataset) -> xr.Variable:
+    """A column along its dimension scales, or alone along dimensions of its own shape."""
+    attrs = {name: text for name, text in one.attrs.items() if name not in _OF_SCALES}
+    if one.is_scale:
+        dims = [_name(one)]
+    else:
+        dims = [_name(scales[0]) if len(scales) else f"{size} values"
+                for scales, size in zip(one.dims, one.shape, strict=True)]  # fmt: skip
+    if h5py.check_string_dtype(one.dtype):
+        return xr.Variable(dims, np.asarray(one.asstr()[()], dtype=str), attrs)
+    return xr.Variable(dims, one[()], attrs)
+
+
+def _name(one: h5py.Dataset) -> str:
+    return str(one.name).rpartition("/")[2]
 
 
 def as_csv(data: xr.Dataset) -> str:

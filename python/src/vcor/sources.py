@@ -8,7 +8,7 @@ import os
 import re
 from pathlib import Path
 
-import h5netcdf
+import h5py
 import numpy as np
 import xarray as xr
 
@@ -47,8 +47,8 @@ class Result:
         self.groups |= set(self._held)
         if not isinstance(source, (xr.Dataset, Case)) and not self._held:
             self.summary = open_results(source)
-            with h5netcdf.File(self.path, "r") as file:
-                self.groups |= set(file.groups)
+            with h5py.File(self.path, "r") as file:
+                self.groups |= set(file)
         self.summary = _in_celsius(self.summary)
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
