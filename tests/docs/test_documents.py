@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from places import LIMIT, ROOT
+from warm import commands_in
 
 CONSUMER = ROOT / "tests" / "consumer"
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"),
@@ -92,18 +93,23 @@ def test_modules_and_files_that_pages_name():
 # ---------------------------------------------------------------------------------- commands
 
 
+@pytest.fixture(scope="session")
+def package(tmp_path_factory):
+    """A folder with the commands of the package."""
+    folder = tmp_path_factory.mktemp("bin")
+    with commands_in(folder, ["card", "export", "fit", "identify", "master", "plot", "table", "uncertainty"]):
+        yield folder
+
+
 @pytest.fixture
-def folder(vcor, tmp_path):
+def folder(vcor, package, tmp_path):
     """A folder as the documents take it: a copy of the examples, and mine.nml, a case of yours."""
     for name in ("examples", "data"):
         shutil.copytree(ROOT / name, tmp_path / name)
     shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
     (tmp_path / "bin").mkdir()
-    (tmp_path / "bin/vcor").symlink_to(vcor)
-    for name in ("card", "export", "fit", "identify", "master", "plot", "table", "uncertainty"):
-        script = tmp_path / f"bin/vcor-{name}"
-        script.write_text(f"#!{sys.executable}\nfrom vcor._command import {name}\n\n{name}()\n")
-        script.chmod(0o755)
+    for program in (vcor, *package.glob("vcor-*")):
+        (tmp_path / "bin" / program.name).symlink_to(program)
     return tmp_path
 
 
