@@ -5,6 +5,7 @@ module vcor_app_screen
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_validity, only : level_caution, level_outside
+   use vcor_number, only : real_text
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : quantities, quantity_place, quantity_t, &
@@ -13,8 +14,8 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, shown, heading, line, padded, percent, right, short, significant, visible, &
-      coordinates
+   public :: report, blocks, digits_of_level, heading, line, padded, percent, right, short, &
+      significant, plain_number, visible, coordinates
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -23,8 +24,7 @@ module vcor_app_screen
       character(len=24) :: title
       character(len=20) :: names(6) = ''
    end type block_t
-   integer :: i
-   !> The table of an impact
+   !> The table of an impact, and of a sweep
    type(block_t), parameter :: blocks(*) = [ &
       block_t('restitution', [character(len=20) :: 'cor_sphere', 'cor', 'resilience', &
       'rebound_height', '', '']), &
@@ -34,9 +34,6 @@ module vcor_app_screen
       '', '', '']), &
       block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', 'loss_tangent', &
       'min_frequency', 'inelasticity', '', ''])]
-   character(len=20), parameter :: all_names(*) = [(blocks(i)%names, i=1, size(blocks))]
-   !> Quantities of the table, by name
-   character(len=*), parameter :: shown(*) = pack(all_names, all_names /= '')
 
 contains
 
@@ -169,12 +166,21 @@ contains
       ! below any error, so that nothing is divided by zero
       real(wp), parameter :: least = 1.0e-20_wp
 
-      digits = 8
-      if (outcome%validity == level_caution) digits = 4
-      if (outcome%validity == level_outside) digits = 3
+      digits = digits_of_level(outcome%validity)
       if (.not. (ieee_is_finite(error) .and. ieee_is_finite(value))) return
       digits = max(2, min(digits, 1 + floor(log10(max(1.0_wp, abs(value)/max(error, least))))))
    end function digits_of
+
+   !> Digits that a number carries where the model holds, and where it holds with caution or not
+   pure function digits_of_level(level) result(digits)
+      !> Level of validity
+      integer, intent(in) :: level
+      integer :: digits
+
+      digits = 8
+      if (level == level_caution) digits = 4
+      if (level == level_outside) digits = 3
+   end function digits_of_level
 
    !> Remark on a number that is less accurate than a reader expects
    pure function rough_error(value, error) result(text)
@@ -290,9 +296,10 @@ contains
 
          real(wp) :: part
 
-         ! to a thousandth of a percent, the last digit shown; zero has no sign
+         ! to a thousandth of a percent at most, the last digit shown; zero has no sign
          part = 1.0e-3_wp*anint(1.0e5_wp*energy/outcome%initial_energy)
          write (percent, '(f8.3, a)') part + 0.0_wp, ' %'
+         if (d < 8) write (percent, '(f8.1, a)') anint(10.0_wp*part)/10.0_wp + 0.0_wp, ' %'
          if (abs(part) >= 1.0e3_wp) percent = right(short(part), 8)//' %'
       end function share
    end function budget
@@ -361,10 +368,23 @@ contains
       text = ''
       do i = 1, size(places)
          text = text//', '//grid%axes(i)%name//' = ' &
-            //significant(grid%axes(i)%values(places(i)), 8, 0)
+            //plain_number(grid%axes(i)%values(places(i)), 8)
       end do
       text = text(3:)
    end function coordinates
+
+   !> A number that is given, rounded to some digits, without zeros at its end
+   function plain_number(value, digits) result(text)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: digits
+      character(len=:), allocatable :: text
+
+      real(wp) :: rounded
+
+      text = significant(value, digits, 0)
+      read (text, *) rounded
+      text = real_text(rounded)
+   end function plain_number
 
    !> A number with two significant digits
    pure function short(value) result(text)

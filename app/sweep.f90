@@ -6,12 +6,14 @@ module vcor_app_sweep
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : coordinates, heading, padded, right, shown, significant
+   use vcor_app_screen, only : blocks, coordinates, digits_of_level, heading, padded, &
+      plain_number, right, significant
    use vcor_app_validity, only : about_numbers, joined, exact_points, points_remark, &
       points_report, warn_of_bands
    use vcor_case_grid, only : grid_t
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_impact_validity, only : level_none
    use vcor_io_file, only : stderr_is_terminal, write_stdout, write_terminal
    use vcor_io_restart, only : create_restart, hash_of, open_restart, restart_t
    use vcor_text, only : integer_text
@@ -192,8 +194,9 @@ contains
       text = heading(job%case%source, title)
       do i = 1, size(job%sweep%grid%axes)
          associate (axis => job%sweep%grid%axes(i), n => size(job%sweep%grid%axes(i)%values))
-            text = text//trim(padded('  '//axis%name, 50)//significant(axis%values(1))//' ..' &
-               //significant(axis%values(n))//' '//padded(axis%unit, 8)//' '//integer_text(n) &
+            text = text//trim(padded('  '//axis%name, 50)//right(plain_number(axis%values(1), 8), &
+               16)//' ..'//right(plain_number(axis%values(n), 8), 16)//' ' &
+               //padded(axis%unit, 8)//' '//integer_text(n) &
                //merge(' value ', ' values', n == 1))//nl
          end associate
       end do
@@ -219,40 +222,55 @@ contains
       type(table_t), intent(in) :: summary
       character(len=:), allocatable :: text
 
-      character(len=:), allocatable :: line
-      real(wp) :: least, most
+      character(len=:), allocatable :: line, lines
       type(quantity_t), allocatable :: columns(:)
-      integer :: first, last, i, k
+      integer :: first, last, i, j, k
 
       allocate (columns, source=quantities())
       text = padded('', 58)//'        smallest         at         largest         at'//nl
       if (size(grid%axes) > 1) text = padded('', 58) &
          //'        smallest   at point         largest   at point'//nl
-      do i = 1, size(shown)
-         associate (quantity => columns(quantity_place(shown(i))), &
-                    column => summary%columns(place_in_table(summary, trim(shown(i))) &
-                    - size(summary%dimensions)))
-            first = 0
-            do k = 1, column%length
-               if (ieee_is_nan(column%reals(k))) cycle
-               if (first == 0) then
-                  first = k
-                  last = k
-               end if
-               if (column%reals(k) < column%reals(first)) first = k
-               if (column%reals(k) > column%reals(last)) last = k
-            end do
-            if (first == 0) cycle
-            least = column%reals(first)
-            most = column%reals(last)
-            line = padded('  '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
-               //significant(least)//where_is(first)//significant(most)//where_is(last)
-            if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
-            text = text//line//nl
-         end associate
+      do i = 1, size(blocks)
+         lines = ''
+         do j = 1, size(blocks(i)%names)
+            if (blocks(i)%names(j) == '') exit
+            associate (quantity => columns(quantity_place(blocks(i)%names(j))), &
+                       values => numbers_of(summary, blocks(i)%names(j)))
+               first = 0
+               do k = 1, size(values)
+                  if (ieee_is_nan(values(k))) cycle
+                  if (first == 0) then
+                     first = k
+                     last = k
+                  end if
+                  if (values(k) < values(first)) first = k
+                  if (values(k) > values(last)) last = k
+               end do
+               if (first == 0) cycle
+               k = digits_between(values(first), values(last))
+               line = padded('    '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
+                  //significant(values(first), max(k, digits_at(first)))//where_is(first) &
+                  //significant(values(last), max(k, digits_at(last)))//where_is(last)
+               if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
+               lines = lines//line//nl
+            end associate
+         end do
+         if (lines /= '') text = text//'  '//trim(blocks(i)%title)//nl//lines
       end do
 
    contains
+
+      !> Digits that the validity of a point leaves
+      function digits_at(point) result(digits)
+         integer, intent(in) :: point
+         integer :: digits
+
+         associate (column => summary%columns(place_in_table(summary, 'validity') &
+                    - size(summary%dimensions)))
+            ! texts are counted from 1, levels from that of no result
+            digits = digits_of_level(column%integers(point) - 1 + level_none)
+         end associate
+      end function digits_at
 
       !> Place of a point
       function where_is(point) result(place)
@@ -260,9 +278,30 @@ contains
          character(len=:), allocatable :: place
 
          place = right(integer_text(point), 11)
-         if (size(grid%axes) == 1) place = significant(grid%axes(1)%values(point), 5, 11)
+         if (size(grid%axes) == 1) place = right(plain_number(grid%axes(1)%values(point), 5), 11)
       end function where_is
    end function ranges
+
+   !> Numbers of a column
+   pure function numbers_of(summary, name) result(values)
+      type(table_t), intent(in) :: summary
+      character(len=*), intent(in) :: name
+      real(wp), allocatable :: values(:)
+
+      values = summary%columns(place_in_table(summary, trim(name)) &
+         - size(summary%dimensions))%reals
+   end function numbers_of
+
+   !> Digits that tell two numbers apart
+   pure function digits_between(least, most) result(digits)
+      real(wp), intent(in) :: least, most
+      !> 2 .. 8
+      integer :: digits
+
+      digits = 2
+      if (most > least) digits = min(8, max(2, &
+         2 + ceiling(log10(max(abs(least), abs(most))/(most - least)))))
+   end function digits_between
 
    !> Points without a result, by their status
    function failed_points(job, failures) result(text)

@@ -4,7 +4,7 @@
 module vcor_app_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_screen, only : coordinates, percent, short, significant
+   use vcor_app_screen, only : coordinates, percent, plain_number, short, significant
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_grid, only : grid_t
@@ -439,8 +439,8 @@ contains
 
       text = ''
       do k = 1, size(least)
-         text = text//', '//grid%axes(k)%name//' '//significant(least(k), 5, 0)
-         if (most(k) > least(k)) text = text//' .. '//significant(most(k), 5, 0)
+         text = text//', '//grid%axes(k)%name//' '//plain_number(least(k), 5)
+         if (most(k) > least(k)) text = text//' .. '//plain_number(most(k), 5)
       end do
       text = text(3:)
    end function place_of
@@ -559,6 +559,8 @@ contains
 
       character(len=*), parameter :: keys(2) = [character(len=22) :: 'valid_temperature_from', &
          'valid_temperature_to']
+      ! data of one temperature scatter by as much
+      real(wp), parameter :: same = 1.0_wp
       type(address_t) :: address
       character(len=:), allocatable :: name, lead, band
       real(wp), allocatable :: temperatures(:)
@@ -579,17 +581,27 @@ contains
          if (.not. case%given('material', trim(keys(i)), item)) cycle
          call case%get('material', trim(keys(i)), ends(i), item)
          if (band /= '') band = band//', '
-         band = band//trim(keys(i))//' '//real_text(ends(i))//' K'
+         band = band//trim(keys(i))//' '//kelvin(ends(i))
       end do
-      outside = count(temperatures < ends(1) .or. temperatures > ends(2))
+      outside = count(temperatures < ends(1) - same .or. temperatures > ends(2) + same)
       if (outside == 0) return
       call case%get('material', 'name', name, item)
-      lead = 'the temperature, '//real_text(temperatures(1))//' K, lies'
+      lead = 'the temperature, '//kelvin(temperatures(1))//', lies'
       if (size(temperatures) > 1) lead = integer_text(outside)//' of ' &
          //integer_text(size(temperatures))//' temperatures lie'
       write (error_unit, '(a)') 'vcor: warning: '//case%source//': '//lead &
          //" outside of the data behind the shift of '"//printable(name)//"' ("//band//')'
    end subroutine warn_of_temperatures
+
+   !> A temperature in K and in degrees Celsius
+   function kelvin(temperature) result(text)
+      !> [K]
+      real(wp), intent(in) :: temperature
+      character(len=:), allocatable :: text
+
+      text = real_text(temperature)//' K = ' &
+         //real_text(anint(100.0_wp*temperature - 27315.0_wp)/100.0_wp)//' C'
+   end function kelvin
 
    !> Warn of one material if impacts rely on it beyond its data
    subroutine warn_of_band(case, grid, summary, item)

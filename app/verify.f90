@@ -112,6 +112,7 @@ contains
       if (comparison%separated) then
          text = text//nl//values_text(comparison)
          if (comparison%has_direct) text = text//nl//differences_text(comparison)
+         text = text//nl//legend(comparison%has_direct)
       else if (.not. allocated(comparison%objection)) then
          text = text//'  all end in the same way, '//trim(status_name( &
             comparison%attempts(attempt_first)%outcome%status)) &
@@ -131,6 +132,20 @@ contains
       text = text//nl
    end function comparison_text
 
+   !> What the columns of the tables are
+   pure function legend(has_direct) result(text)
+      !> Whether method direct is among them
+      logical, intent(in) :: has_direct
+      character(len=:), allocatable :: text
+
+      text = '  states: error of cor as the solution states it; off by: its distance from the ' &
+         //'best cor; honest: at'//nl//'  most three times what it states; dW/KE_0: energy ' &
+         //'imbalance over the energy before; digits: those'//nl//'  that the first solution ' &
+         //'shares with the best'
+      if (has_direct) text = text//'; dt -> 0: limit of direct, order: of its error in dt'
+      text = text//nl
+   end function legend
+
    !> Table of a case with every plate model and both contact laws, then with the other pair if that
    !> makes a difference
    function models_text(models) result(text)
@@ -139,7 +154,8 @@ contains
 
       integer :: i
 
-      text = '  effect of the choice of model; * marks that of the case'//nl &
+      text = '  effect of the choice of model; * marks that of the case; half_space is body without ' &
+         //'a back'//nl &
          //'  '//padded('waves', 10)//'  '//padded('law', 9)//right('cor', 16) &
          //right('cor_sphere', 16)//right('contact_time [s]', 18) &
          //right('residual_indentation [m]', 26)//nl

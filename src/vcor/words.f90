@@ -25,6 +25,28 @@ module vcor_words
       gone_t('footprint', "waves = 'body' solves the contact itself: remove it"), &
       gone_t('footprint_effect', "waves = 'body' solves the contact itself: remove it")]
 
+   !> A name that the field has for a word of input or output
+   type :: synonym_t
+      character(len=20) :: name
+      character(len=16) :: here
+   end type synonym_t
+
+   !> The synonyms that no likeness of letters leads from
+   type(synonym_t), parameter :: synonyms(*) = [ &
+      synonym_t('tan_delta', 'loss_tangent'), &
+      synonym_t('tan_d', 'loss_tangent'), &
+      synonym_t('loss_factor', 'loss_tangent'), &
+      synonym_t('restitution', 'cor_sphere'), &
+      synonym_t('rebound', 'resilience'), &
+      synonym_t('rebound_resilience', 'resilience'), &
+      synonym_t('peak_force', 'max_force'), &
+      synonym_t('duration', 'contact_time'), &
+      synonym_t('contact_duration', 'contact_time'), &
+      synonym_t('penetration', 'max_indentation'), &
+      synonym_t('deformation', 'max_indentation'), &
+      synonym_t('speed', 'velocity'), &
+      synonym_t('youngs_modulus', 'modulus')]
+
 contains
 
    !> The words of a list as an array
@@ -116,7 +138,7 @@ contains
       if (last < len_trim(known)) text = text//", ..."
    end function suggestion
 
-   !> The known name nearest to a given one
+   !> The known name that means the same as a given one, or else the nearest
    pure function nearest_name(name, known) result(word)
       !> The unknown name, any case
       character(len=*), intent(in) :: name
@@ -128,6 +150,10 @@ contains
 
       word = ""
       if (len_trim(name) == 0 .or. len_trim(name) > longest_name) return
+      first = findloc(synonyms%name == lower(name), .true., dim=1)
+      if (first > 0) word = trim(synonyms(first)%here)
+      if (contains_word(lower(known), word)) return
+      word = ""
       ! one error in a short name, one per three letters in a long one, none in a single letter
       most = min(max(1, (len_trim(name) + 1)/3), len_trim(name) - 1)
       least = most + 1

@@ -134,7 +134,17 @@ def test_words_of_the_output(vcor, word):
 
 @pytest.mark.parametrize(
     "word, says",
-    [("hertz", "contact.law"), ("layer", "plate.base"), ("pad", "plate.base"), ("ting", "receding"), ("zener", "'constant'")],
+    [
+        ("hertz", "contact.law"),
+        ("layer", "plate.base"),
+        ("pad", "plate.base"),
+        ("ting", "receding"),
+        ("zener", "'constant'"),
+        ("hardness", "DMA"),
+        ("shore", "vcor identify"),
+        ("rebound", "resilience"),
+        ("tan_delta", "peak_loss_tangent"),
+    ],
 )
 def test_words_of_the_field(vcor, word, says):
     """Terms that are not words of the input lead to related keys."""

@@ -94,7 +94,17 @@ def test_plain_numbers(sls):
             assert re.fullmatch(r"-?\d\.\d{16}e[+-]\d{2,3}", value), name
 
 
-@pytest.mark.parametrize("name, nearest", [("kor", "cor"), ("COR", "cor"), ("step", "steps")])
+@pytest.mark.parametrize(
+    "name, nearest",
+    [
+        ("kor", "cor"),
+        ("COR", "cor"),
+        ("step", "steps"),
+        ("tan_delta", "loss_tangent"),
+        ("Rebound", "resilience"),
+        ("penetration", "max_indentation"),
+    ],
+)
 def test_unknown_name(sls, name, nearest):
     sls.refuses("run", "case.nml", "--print", name, code=USAGE, says=[f"'{name}'", f"'{nearest}'"])
     words = ["run", "case.nml", "--print", f"cor,{name}"]

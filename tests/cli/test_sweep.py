@@ -424,7 +424,7 @@ def test_points_out_of_range(vcor):
     assert done.code == NUMERICAL
     assert done.err.count("\n") == 1
     assert done.err.startswith("vcor: error: case.nml: 6 of 8 points")
-    assert "sphere.radius = -1.0000000E-02, rubber.alpha = 300.00000: " in done.err
+    assert "sphere.radius = -0.01, rubber.alpha = 300.0: " in done.err
     assert "sphere.radius is out of range, expected a number > 0 [m]" in done.err
     table = summary(vcor)
     statuses = [row["status"] for row in table]
@@ -440,7 +440,7 @@ def test_points_out_of_range(vcor):
         for name in set(NAMES) - WHOLE - absent:
             assert math.isnan(float(row[name])) == bad, name
     # grouped by status, with the first point of each and its message
-    first = "first at point 1, sphere.radius = -1.0000000E-02, rubber.alpha = 300.00000:"
+    first = "first at point 1, sphere.radius = -0.01, rubber.alpha = 300.0:"
     assert f"       6  invalid, {first}\n            sphere.radius is out of range, exp" in done.out
     with h5py.File(vcor.folder / "case.h5") as file:
         status = file["summary/status"].asstr()[:]
@@ -482,7 +482,7 @@ def test_sticking_and_failing(vcor):
     done = vcor("run", "case.nml")
     assert done.code == NUMERICAL
     assert [row["status"] for row in summary(vcor)] == ["separated", "failed", "failed", "separated"]
-    assert "       2  failed, first at point 2, solver.time_step = 1.0000000E-03:\n" in done.out
+    assert "       2  failed, first at point 2, solver.time_step = 0.001:\n" in done.out
     assert "            solver.time_step is 1.00E-03 s, too long" in done.out
 
 

@@ -331,14 +331,16 @@ def test_temperatures_beyond_the_data_are_warned_of(vcor):
     vcor.write(text)
     done = vcor("run", "case.nml", "--print", "cor", "--quiet")
     assert done.code == 0
-    assert "vcor: warning: case.nml: the temperature, 310.0 K, lies outside" in done.err
-    assert "'sheet' (valid_temperature_from 250.0 K, valid_temperature_to 305.0 K)" in done.err
+    assert "vcor: warning: case.nml: the temperature, 310.0 K = 36.85 C, lies outside" in done.err
+    assert "(valid_temperature_from 250.0 K = -23.15 C, valid_temperature_to 305.0 K = 31.85 C)" in done.err
     vcor.write(text + "&sweep parameter = 'impact.temperature', values = 240, 250, 300, 320 /\n")
     done = vcor("run", "case.nml", "--print", "cor", "--quiet")
     assert done.err.count("vcor: warning") == 1
     assert "2 of 4 temperatures lie outside" in done.err
-    vcor.write(text.replace("310.0", "300.0"))
-    assert vcor("run", "case.nml", "--print", "cor", "--quiet").err == ""
+    # data of one temperature scatter by a degree
+    for inside in ("300.0", "305.007", "249.5"):
+        vcor.write(text.replace("310.0", inside))
+        assert vcor("run", "case.nml", "--print", "cor", "--quiet").err == ""
 
 
 def test_notes(vcor):
@@ -352,7 +354,7 @@ def test_notes(vcor):
         assert notes[0].startswith("vcor: note: case.nml:")
         assert "'sheet' is at its reference temperature, 298.15 K" in notes[0]
     vcor.write(case(shifted("sls", "wlf").replace("298.15", "27.0"), temperature=25.0))
-    assert "temperature = 25.0 K is less than 100.0: is it in degrees Celsius?" in vcor(
+    assert "temperature = 25.0 K is less than 100.0: is it in degrees Celsius? That is 298.15 K" in vcor(
         "check", "case.nml"
     ).err
 

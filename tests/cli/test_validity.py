@@ -361,6 +361,28 @@ def test_sweep(vcor):
     assert float(first[2]) == pytest.approx(numbers(vcor, SLS, *words)["cor_sphere"], abs=2e-5)
 
 
+def test_the_screen_of_a_sweep(vcor):
+    """Groups as those of an impact, and the digits that the validity of each end carries."""
+    vcor.write(GLASS + "&sweep parameter = 'impact.velocity', values = 0.1, 0.2 /\n")
+    out = vcor.succeeds("run", "case.nml", "--output", "out")
+    titles = [line.strip() for line in out.splitlines() if re.fullmatch(r"  [a-z][a-z ]+", line)]
+    assert titles == ["restitution", "motion", "force", "what decides the loss"]
+    assert re.search(r"impact.velocity +0\.1 \.\. +0\.2 m/s +2 values\n", out)
+    line = r"largest contact force +F_max +(\S+) +(\S+) +(\S+) +(\S+) N\n"
+    least, at, most, there = re.search(line, out).groups()
+    assert (at, there) == ("0.1", "0.2")
+    with h5py.File(vcor.folder / "out" / "case.h5") as file:
+        level = file["summary"]["validity"].asstr()[:]
+        force = file["summary"]["max_force"][:]
+    assert list(level) == ["good", "good"]
+    assert [float(least), float(most)] == pytest.approx(list(force), rel=1e-7)
+    vcor.write(SLS + "&sweep parameter = 'impact.velocity', values = 9, 9.01 /\n")
+    out = vcor.succeeds("run", "case.nml")
+    least, _, most, _ = re.search(line, out).groups()
+    # three digits, but for those that tell the two apart
+    assert 3 <= len(least.replace(".", "")) <= 5 and float(least) < float(most)
+
+
 def test_sweep_of_bare_numbers(vcor):
     vcor.write(SLS + VELOCITIES)
     done = vcor("run", "case.nml", "--print", "validity,validity_cause")
@@ -387,7 +409,15 @@ SLIPS = [
     ("impact.velocity=2", None),
     ("impact.drop_height=29", None),
     ("impact.drop_height=40", "is it in cm or mm?"),
+    ("impact.velocity=250", None),
+    ("impact.velocity=1400", "is it in mm/s?"),
     ("sphere.radius=4", "is it in mm?"),
+    ("sphere.radius=0.9", None),
+    ("plate.half_thickness=0.9", None),
+    ("plate.half_thickness=12.5", "is it in mm?"),
+    ("plate.thickness=12.5", "is it in mm?"),
+    ("plate.surface_radius=25", "is it in mm?"),
+    ("plate.extent=150", "is it in mm?"),
     ("bearing_steel.density=7.8", "is it in g/cm3?"),
     ("bearing_steel.density=7.8e6", "is it in g/m3?"),
     ("bearing_steel.modulus=210", "is it in kPa, MPa or GPa?"),

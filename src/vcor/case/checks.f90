@@ -52,11 +52,15 @@ module vcor_case_checks
    !> times from the period of atomic vibrations
    type(limits_t), parameter :: limits(*) = [ &
       limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
+      limits_t('impact', 'velocity', 'm/s', -endless, 300.0_wp, '', 'is it in mm/s?'), &
       limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
       limits_t('sphere', 'diameter', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('sphere', 'punch_radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
-      limits_t('plate', 'half_thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
+      limits_t('plate', 'half_thickness', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
+      limits_t('plate', 'thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
+      limits_t('plate', 'surface_radius', 'm', -endless, 10.0_wp, '', 'is it in mm?'), &
+      limits_t('plate', 'extent', 'm', -endless, 20.0_wp, '', 'is it in mm?'), &
       limits_t('material', 'reference_temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('material', 'valid_temperature_from', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('material', '', 'Pa', 1.0e3_wp, 2.0e12_wp, 'is it in kPa, MPa or GPa?', &
@@ -474,6 +478,8 @@ contains
          if (low < limit%least .and. catalogue(row)%name /= 'equilibrium_modulus') then
             note = real_text(low)//unit//' is less than '//real_text(limit%least) &
                //': '//limit%below
+            if (limit%below == celsius) note = trim(note)//' That is ' &
+               //real_text(anint(100.0_wp*low + 27315.0_wp)/100.0_wp)//' K'
          else if (high > limit%most) then
             note = real_text(high)//unit//' is more than '//real_text(limit%most) &
                //': '//limit%above

@@ -101,6 +101,18 @@ module vcor_case_choices
       topic_t(' zener ', &
          "Waves in a thin elastic plate: plate.waves = 'constant'; column inelasticity " &
          //'(lambda).'), &
+      topic_t(' hardness shore durometer ', &
+         'A hardness is not a modulus of an impact: it is read after seconds, while a contact of ' &
+         //'a millisecond meets a stiffer material that loses more. Give moduli from DMA (vcor ' &
+         //'fit, vcor master), or find them from measured impacts (vcor identify).'), &
+      topic_t(' rebound bounce restitution ', &
+         'Velocity after the impact over that before: column cor_sphere, that of the sphere, as ' &
+         //'a drop test reads it; cor, that between both bodies. resilience is cor_sphere^2, the ' &
+         //'rebound of rubber laboratories; rebound_height is for a case with drop_height. vcor ' &
+         //'identify reads them as data.'), &
+      topic_t(' tan_delta damping ', &
+         'The loss tangent: column peak_loss_tangent at pi/t0, which decides the loss, ' &
+         //'loss_tangent at 2 pi/t0; vcor material gives it over frequency.'), &
       topic_t(' dma tts ', &
          'impact.temperature shifts the times of a material with a shift; vcor master ' &
          //'and vcor fit make one from DMA data at several temperatures.'), &

@@ -171,7 +171,7 @@ contains
          outcome%max_force_error)
       call list%add('resilience', 'e_a^2', '1', 'rebound resilience, cor_sphere^2', &
          outcome%resilience)
-      call list%add('rebound_height', 'H_1', 'm', 'height of the rebound from drop_height', &
+      call list%add('rebound_height', 'H_1', 'm', 'rebound height after a drop from drop_height', &
          outcome%rebound_height)
       call list%add('contact_radius', 'a', 'm', 'largest radius of the contact', &
          outcome%contact_radius)

@@ -382,6 +382,9 @@ def _lines(keys: Mapping[str, Any], model: str) -> Iterator[str]:
     """Lines of a group."""
     case = Case(_CASE.format("'m'") + f"&material name = 'm', model = '{model}' /\n")
     for key, value in keys.items():
+        if not isinstance(value, str):
+            # no data are known better
+            value = [float(f"{x:.7e}") for x in np.atleast_1d(value)]
         text = f"   {key} = {_written(value, key)}"
         if key in ("moduli", "times"):
             text = textwrap.fill(text, 96, subsequent_indent=" " * (len(key) + 6))

@@ -151,6 +151,7 @@ def report(fit: Fit, source: str, note: str, tail: Sequence[str]) -> str:
     """What the command prints before the group."""
     samples = fit.samples
     lines = [f"vcor {__version__}  {source}", note, "", f"  {_title(fit)}"]
+    lines.append(f"    {'parameter':24s}{'value':>16s} {'unit':8s}+- standard error")
     lines += [_line(fit, one) for one in fit.parameters]
     band = f"{_short(samples.first_time)} to {_short(samples.last_time)} s"
     if samples.dynamic:
@@ -228,7 +229,7 @@ def _upper(fit: Fit) -> float:
 def _line(fit: Fit, one: Parameter) -> str:
     """Line of a parameter."""
     unit = "" if one.unit == "1" else one.unit
-    text = f"    {one.label:24s}{_significant(one.value):>16s} {unit:8s}"
+    text = f"    {one.label:24s}{_significant(one.value, _digits(one)):>16s} {unit:8s}"
     if one.state == "fixed":
         return f"{text}given"
     if one is fit.parameters[0] and fit.is_open:
@@ -248,14 +249,21 @@ def _short(value: float) -> str:
     return f"{value:.1E}"
 
 
-def _significant(value: float) -> str:
-    """A number with eight digits."""
+def _digits(one: Parameter) -> int:
+    """Digits down to the second one of the standard error, 2 to 8."""
+    if one.state == "fixed" or not one.error > 1e-8 * one.value > 0:
+        return 8
+    return max(2, min(8, 2 + math.floor(math.log10(one.value / one.error))))
+
+
+def _significant(value: float, digits: int = 8) -> str:
+    """A number with some digits."""
     if value == 0:
         return "0"
-    if not 0.1 <= abs(value) < 1e6:
-        return f"{value:.7E}"
-    digits = 1 + math.floor(math.log10(float(f"{value:.7e}")))
-    return f"{value:.{8 - max(0, digits)}f}"
+    if not 0.1 <= abs(value) < 10 ** min(6, digits):
+        return f"{value:.{digits - 1}E}"
+    before = 1 + math.floor(math.log10(float(f"{value:.{digits - 1}e}")))
+    return f"{value:.{digits - max(0, before)}f}"
 
 
 def percent(ratio: float) -> str:
