@@ -32,7 +32,7 @@ program test_laws
 
    !> Work of a dashpot along Hertz's impact, (4/5) (5/4)^(3/5) B(3/5, 3/2) = 1.1534488580952888
    real(wp), parameter :: c = 0.8_wp*1.25_wp**0.6_wp*gamma(0.6_wp)*gamma(1.5_wp)/gamma(2.1_wp)
-   !> Restitution of a Kelvin-Voigt contact in powers of sqrt(b), docs/theory.md
+   !> Restitution of a Kelvin-Voigt contact in powers of sqrt(b), docs/numerics.md
    real(wp), parameter :: series(0:10) = [1.0_wp, 0.0_wp, -c, 0.0_wp, 0.6_wp*c**2, &
       4.0_wp/15.0_wp, -0.5228825680884149639_wp, -0.4_wp*c, 0.34874267526038503473_wp, &
       1.275_wp*c**2*4.0_wp/15.0_wp, -0.23309813201924440033_wp + 13.0_wp/150.0_wp]
@@ -199,7 +199,7 @@ contains
    !>
    !>     (1 - e)/epsilon = 5/9 - (3/5) (2/3.218)^(5/3) epsilon^(2/3) + O(epsilon)
    !>
-   !> (docs/theory.md). Three values of epsilon, each an eighth of the one before, give the
+   !> (docs/numerics.md). Three values of epsilon, each an eighth of the one before, give the
    !> coefficient without the next two powers, epsilon^(1/3) and epsilon^(2/3)
    subroutine test_maxwell_slope()
       real(wp), parameter :: epsilon(3) = 1.0e-2_wp*[1.0_wp, 1.0_wp/8.0_wp, 1.0_wp/64.0_wp]
@@ -294,7 +294,7 @@ contains
 
    !> A Kelvin-Voigt contact with A = lambda T and Zener's plate obey the same equation of motion,
    !> one until F = 0 and the other until s = 0: their restitutions differ by the factor Y(p),
-   !> p = b^(5/2) sqrt(e), of docs/theory.md
+   !> p = b^(5/2) sqrt(e), of docs/numerics.md
    subroutine test_kelvin_voigt_and_zener()
       real(wp), parameter :: lambda(3) = [0.05_wp, 0.2_wp, 0.3_wp]
       real(wp), parameter :: ends(0:6) = [1.0_wp, 4.0_wp/15.0_wp, 13.0_wp/150.0_wp, &
