@@ -170,15 +170,21 @@ def test_noise_is_taken_for_structure_once_in_a_thousand():
         # noise that storage and loss modulus share
         draws = np.tile(rng.standard_normal((4000, m)), 2)
         draws = draws - draws @ q @ q.T
-        assert sum(are_alike(r, np.concatenate([basis, basis]), m) for r in draws) <= 14
+        assert sum(are_alike(r, np.concatenate([basis, basis]), 2) for r in draws) <= 14
         alone = np.linalg.qr(basis)[0]
         draws = rng.standard_normal((4000, m))
         draws -= draws @ alone @ alone.T
         assert sum(are_alike(r, basis) for r in draws) <= 14
     waves = np.tile(np.cos(6 * x), 2)
     waves -= q @ (q.T @ waves)
-    assert are_alike(waves, np.concatenate([basis, basis]), m)
+    assert are_alike(waves, np.concatenate([basis, basis]), 2)
     assert sum(are_alike(r + 3 * np.sin(10 * x), basis) for r in draws[:100]) >= 98
+    # each of two curves that overlap errs by itself
+    own = np.arange(m) % 2
+    both = draws[:100] + np.where(own, 2.0, -2.0)
+    assert sum(are_alike(r, basis, 1, own) for r in both) >= 98
+    assert sum(are_alike(r, basis, 1, own) for r in draws) <= 14
+    assert sum(are_alike(r, basis) for r in both) == 0
     assert not are_alike(np.zeros(m), basis) and not are_alike(draws[0, :6], basis[:6])
 
 

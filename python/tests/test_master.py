@@ -9,7 +9,7 @@ import pytest
 import vcor
 from vcor.materials import master
 from vcor.materials.data import read_moduli
-from vcor.materials.shifting import Curve, log_shift
+from vcor.materials.shifting import Curve
 
 C1, C2, REFERENCE = 12.0, 80.0, 293.15
 
@@ -157,6 +157,29 @@ def test_a_fit_shifts_by_the_same_code(tmp_path, capsys, program):
     capsys.readouterr()
 
 
+def test_misfits_of_a_broken_master_curve_are_no_noise(tmp_path, capsys):
+    """Each temperature errs by itself, while the points next to each other are of several."""
+
+    def broken(at, t):
+        size = 1.1 if t % 10 else 1 / 1.1
+        return tuple(size * one for one in moduli(at, t + 273.15, True))
+
+    temperatures = np.arange(0, 60, 5)
+    model = {"model": "mittag_leffler", "name": "rubber"}
+    for made in (moduli, broken):
+        path = tmp_path / "raw.csv"
+        if made is broken:
+            path.write_text(table(f"T [C],{HEAD}", temperatures, made))
+        else:
+            file_of(path, temperatures, noise=0.01)
+        master.main([str(path), "--vertical-shift", "no", "--output", str(tmp_path)])
+        later = vcor.fit(tmp_path / "raw_master.csv", **model)
+        assert later.follows == (made is moduli)
+        if later.follows:
+            assert vcor.fit(path, **model).follows
+    capsys.readouterr()
+
+
 def test_a_fit_of_shifts_without_a_law_names_master(tmp_path):
     shifts = {0: 2.0, 10: 0.3, 20: 0.2, 30: -2.0, 40: -2.2, 50: -4.0}
 
@@ -186,23 +209,6 @@ def test_columns_and_units_and_what_was_taken(tmp_path, capsys):
     wanted = vcor.master(plain, reference_temperature=283.15)
     found = json.loads((tmp_path / "odd_master.json").read_text())
     assert found["log10_shift"] == wanted.log_shift.tolist()
-
-
-@pytest.mark.parametrize(
-    ("law", "values"),
-    [("WLF", {"wlf_c1": 12.0, "wlf_c2": 80.0}), ("Arrhenius", {"activation_energy": 7e4})],
-)
-def test_laws_are_those_of_the_library(law, values):
-    case = vcor.Case({"impact": {"velocity": 1.0, "temperature": 300.0}, "sphere": {"radius": 1.0,
-                      "material": "m"}, "plate": {"material": "m", "waves": "none"}, "material": [
-                      {"name": "m", "model": "sls", "glassy_modulus": 2.0, "alpha": 1.0,
-                       "beta": 2.0, "poisson_ratio": 0.5, "density": 1.0, "shift": law.lower(),
-                       "reference_temperature": REFERENCE, **values}]})  # fmt: skip
-    t = np.array([270.0, 293.15, 330.0])
-    found = log_shift(list(values.values()), t, REFERENCE)
-    for one, shift in zip(t, found, strict=True):
-        case["impact.temperature"] = one
-        assert np.log10(case.material("m").time_factor()) == pytest.approx(shift, abs=1e-13)
 
 
 def test_shift_factors_fall():

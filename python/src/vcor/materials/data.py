@@ -93,6 +93,11 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
     `attrs["temperature"]` is the mean temperature [K], nan where the file has none.
     """
     across = "frequency" if data.attrs["kind"] == "dynamic" else "time"
+    if any(remark.strip().startswith("&material shift ") for remark in data.attrs["remarks"]):
+        # a master curve is one, whose points belong to the sets that it was made of
+        one = data.sort_values(across)
+        one.attrs = {**data.attrs, "temperature": math.nan}
+        return [one]
     kelvin = data["temperature"].to_numpy() if "temperature" in data else np.full(len(data), np.nan)
     group = data["set"].to_numpy() if "set" in data else np.zeros(len(data))
     jumps = (np.diff(group) != 0) | (np.abs(np.diff(kelvin)) > SAME_TEMPERATURE)

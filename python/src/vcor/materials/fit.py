@@ -194,7 +194,8 @@ def samples_of(
     names = ["storage_modulus", "loss_modulus"] if kind == "dynamic" else ["relaxation_modulus"]
     at = parts[0]["frequency" if kind == "dynamic" else "time"].to_numpy(dtype=float)
     moduli = parts[0][names].to_numpy(dtype=float).T
-    return Samples(at, np.ascontiguousarray(moduli), keys), source, []
+    own = parts[0]["set"].to_numpy(dtype=int) if "set" in parts[0] else None
+    return Samples(at, np.ascontiguousarray(moduli), keys, own), source, []
 
 
 def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:
@@ -207,14 +208,15 @@ def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:
             f"{source}: the shifts between its {len(parts)} temperatures follow no law; "
             f"{command('master')} gives them as a table, and the master curve for {command('fit')}"
         )
-    at, *moduli = found.curve()
+    at, moduli, own = found.points()
+    order = np.argsort(at, kind="stable")
     celsius = [found.temperatures[i] - ZERO_C for i in (0, -1)]
     reference = found.reference_temperature - ZERO_C
     note = (
         f"  note: {len(parts)} curves from {celsius[0]:.4g} to {celsius[1]:.4g} C are shifted to "
         f"{reference:.4g} C by {found.law.name} ({command('master')} says more)"
     )
-    return Samples(at, np.array(moduli), tuple(found.lines(""))), note
+    return Samples(at[order], moduli[:, order], tuple(found.lines("")), own[order]), note
 
 
 def _samples_of_arrays(data: Any) -> Samples:

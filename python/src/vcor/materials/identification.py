@@ -365,7 +365,7 @@ def _alike(problem: Problem, x: Floats, derivatives: Floats) -> tuple[str, ...]:
             # the baseline and the start are fitted, too
             more = [1 / problem.sigma[part], np.gradient(predicted[part], block.at)]
             own = np.column_stack([own, *more])
-        if are_alike(r[part], own, len(block.value) // len(set(block.quantity))):
+        if are_alike(r[part], own, len(set(block.quantity))):
             found.append(block.source)
     return tuple(found)
 

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, within
@@ -64,6 +65,15 @@ class Master:
 
         The shift factors are those that a material takes: of the law, if they follow one.
         """
+        at, moduli, _ = self.points()
+        order = np.argsort(at, kind="stable")
+        return at[order], *moduli[:, order]
+
+    def points(self) -> tuple[Floats, Floats, NDArray[np.int_]]:
+        """The same, one curve after the other, and the number of the curve of each point, from 1.
+
+        The moduli are of shape (1 or 2, n).
+        """
         law, log_shift = self.law, self.log_shift
         if law:
             log_shift = law.log_shift(self.temperatures, self.reference_temperature)
@@ -77,8 +87,8 @@ class Master:
             one.moduli / (sizes[i] if sizes is not None else 1.0)
             for i, one in enumerate(self.curves)
         ])  # fmt: skip
-        order = np.argsort(at, kind="stable")
-        return at[order], *moduli[:, order]
+        own = np.repeat(np.arange(len(self.curves)) + 1, [len(one.at) for one in self.curves])
+        return at, moduli, own
 
     @property
     def law(self) -> Law | None:
@@ -354,13 +364,15 @@ def _work(options: argparse.Namespace) -> None:
         columns=columns_option(options.columns), units=options.units,
     )  # fmt: skip
     dynamic = found.curves[0].dynamic
-    head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
+    head = "omega [rad/s],E_stor [Pa],E_loss [Pa],set" if dynamic else "t [s],E [Pa],set"
+    at, moduli, own = found.points()
+    rows = _rows([at, *moduli, own.astype(float)])
     reference = found.reference_temperature
     stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
     pairs = found.lines(f"{stem}_shift.csv")
     keys = "".join(f"# &material {pair}\n" for pair in pairs)
     texts = {
-        ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n" + _rows(found.curve()),
+        ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n{rows}",
         "_shift.csv": f"# reference temperature {reference:.6g} K\nT [K],log10 a_T\n"
         + _rows((found.temperatures, found.log_shift)),
         ".json": found.as_dict(),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._library import Floats
 
@@ -14,7 +15,9 @@ SIGNIFICANT = 3.1
 LEAST_EXCESS = 5
 
 
-def are_alike(r: Floats, derivatives: Floats, points: int | None = None) -> bool:
+def are_alike(
+    r: Floats, derivatives: Floats, quantities: int = 1, curve: NDArray[np.int_] | None = None
+) -> bool:
     """Whether neighbouring misfits are more alike than noise leaves them.
 
     Noise is independent from point to point, while a wrong model errs in the same direction over
@@ -29,33 +32,39 @@ def are_alike(r: Floats, derivatives: Floats, points: int | None = None) -> bool
     Parameters
     ----------
     r
-        Misfits, one sequence or several in turn, shape (m,).
+        Misfits, shape (m,); of several quantities one after the other, each at the same points.
     derivatives
         By all that was fitted, of full rank, shape (m, p).
-    points
-        Length of a sequence; None: there is one.
+    quantities
+        How many there are.
+    curve
+        Which curve each point belongs to, shape (m/quantities,): neighbours are of one curve, as
+        curves of several temperatures in a master curve err by themselves. None: there is one.
     """
     m, p = derivatives.shape
-    length = points or m
     if m < p + LEAST_EXCESS or not r @ r > 0:
         return False
+    own = np.zeros(m // quantities, dtype=int) if curve is None else curve
+    sequence = np.concatenate([own + i * (own.max() + 1) for i in range(quantities)])
+    order = np.argsort(sequence, kind="stable")
+    pairs = np.diff(sequence[order]) == 0
+    before, after = order[:-1][pairs], order[1:][pairs]
 
     def neighbours(columns: Floats) -> Floats:
         """Mean of the two neighbours of each number; a missing one counts as 0."""
         means = np.zeros_like(columns)
-        for i in range(0, m, length):
-            means[i : i + length - 1] += columns[i + 1 : i + length] / 2
-            means[i + 1 : i + length] += columns[i : i + length - 1] / 2
+        means[before] += columns[after] / 2
+        means[after] += columns[before] / 2
         return means
 
     q = np.linalg.qr(derivatives)[0]
     aq = neighbours(q)
     g = q.T @ aq
-    sequences, n = m // length, m - p
+    n = m - p
     mean = -float(np.trace(g)) / n
-    square = 0.5 * (m - sequences) - 2 * float(np.sum(aq**2)) + float(np.sum(g**2))
+    square = 0.5 * len(before) - 2 * float(np.sum(aq**2)) + float(np.sum(g**2))
     rho = float(r @ neighbours(r) / (r @ r))
     # storage and loss modulus may share their noise, or one has nearly all of it: in both cases the
-    # variance is that of one sequence
-    deviation = math.sqrt(max(0.0, sequences * 2 * (square - n * mean**2) / (n * (n + 2))))
+    # variance is that of one quantity
+    deviation = math.sqrt(max(0.0, quantities * 2 * (square - n * mean**2) / (n * (n + 2))))
     return bool(rho - mean > SIGNIFICANT * deviation)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from .._library import Floats, NumericalError
@@ -45,6 +46,8 @@ class Samples:
     moduli: Floats
     #: Further keys of the &material group
     keys: tuple[str, ...] = ()
+    #: Of a master curve: which curve each point is of, shape (n,)
+    curve: NDArray[np.int_] | None = None
 
     @property
     def dynamic(self) -> bool:
@@ -137,7 +140,9 @@ class Problem:
             raise NumericalError("the data do not determine all parameters")
         variance = float(r @ r) / max(1, len(r) - inner.shape[1])
         rms = math.sqrt(r @ r / len(r))
-        told = rms > NEGLIGIBLE and are_alike(r, inner, len(self.samples.at))
+        told = rms > NEGLIGIBLE and are_alike(
+            r, inner, len(self.samples.moduli), self.samples.curve
+        )
         return covariance(points), variance, told or rms > TOO_LARGE
 
 

@@ -9,16 +9,18 @@ nothing about the shift; the loss modulus of a rubber does.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
-from .._library import Floats, NumericalError
-from .units import GAS, ZERO_C
+from .._library import Error, Floats, NumericalError
+from ..case import Case
+from .units import ZERO_C
 
 #: Degree of the polynomial over the logarithm of frequency that two curves share
 DEGREE = 4
@@ -36,6 +38,13 @@ UNDETERMINED = 1 / 3
 NO_STEP = 1e-6
 #: Reduction of the sum of squares, in variances, from which on moduli follow the temperature
 VERTICAL = 9.0
+#: Case with a material whose times follow a law
+_CASE = """&impact velocity = 1.0 /
+&sphere radius = 1.0, mass = 1.0, material = 'm' /
+&plate material = 'm', waves = 'none' /
+&material name = 'm', model = 'sls', glassy_modulus = 2.0, alpha = 1.0, beta = 2.0,
+poisson_ratio = 0.5, shift = '{}', reference_temperature = {!r}{} /
+"""
 
 
 @dataclass(frozen=True)
@@ -229,20 +238,21 @@ class Law:
 
     def log_shift(self, t: Floats, reference: float) -> Floats:
         """log10 a_T at temperatures [K]."""
-        return log_shift(list(self.values.values()), t, reference)
+        return log_shift(self.values, t, reference)
 
 
-def log_shift(values: Sequence[float] | Floats, t: Floats, reference: float) -> Floats:
-    """log10 a_T by the constants of a law, two of WLF or one of Arrhenius.
-
-    As the library has it, for many trials of a search.
-    """
-    shift: Floats
-    if len(values) == 2:
-        shift = -values[0] * (t - reference) / (values[1] + t - reference)
-    else:
-        shift = values[0] / GAS / math.log(10) * (1 / t - 1 / reference)
-    return shift
+def log_shift(values: Mapping[str, float], t: Floats, reference: float) -> Floats:
+    """log10 a_T of a material by the constants of a law; nan where they allow no temperature."""
+    law = "wlf" if "wlf_c1" in values else "arrhenius"
+    keys = "".join(f", {key} = {value!r}" for key, value in values.items())
+    found = np.full(len(t), np.nan)
+    with contextlib.suppress(Error):
+        case = Case(_CASE.format(law, reference, keys))
+        material = case.material("m")
+        for i, kelvin in enumerate(t):
+            case["impact.temperature"] = float(kelvin)
+            found[i] = math.log10(material.time_factor())
+    return found
 
 
 def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: float) -> list[Law]:
@@ -259,14 +269,16 @@ def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: floa
         if seen.sum() < len(start):
             continue
 
-        def misfit(x: Floats) -> Floats:
-            law: Floats = np.diff(log_shift(np.exp(x), temperatures, reference))
+        def misfit(x: Floats, keys: tuple[str, ...] = tuple(start)) -> Floats:
+            constants = dict(zip(keys, np.exp(x).tolist(), strict=True))
+            law: Floats = np.diff(log_shift(constants, temperatures, reference))
             return ((law - steps) / errors)[seen]
 
-        best = least_squares(misfit, np.log(list(start.values())), max_nfev=500)
-        values = np.exp(best.x)
-        if name == "WLF" and values[1] + float(np.min(temperatures - reference)) <= 0:
+        begin = np.log(list(start.values()))
+        if not np.isfinite(misfit(begin)).all():
             continue
+        best = least_squares(misfit, begin, max_nfev=500)
+        values = np.exp(best.x)
         square = 2 * best.cost / max(int(seen.sum()) - len(start), 1)
         covariance = np.linalg.pinv(best.jac.T @ best.jac) * max(1.0, square)
         constants, deviations = (
