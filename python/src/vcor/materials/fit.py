@@ -36,6 +36,8 @@ CONSTANT = 1e-6
 #: Fall of the modulus over a decade that is none: for a series the accuracy of any data, for a law,
 #: which extrapolates, more
 FLAT_SERIES, FLAT_LAW = 5e-3, 0.1
+#: Digits of a parameter at least, which reproduce the fit, and at most
+LEAST_DIGITS, MOST_DIGITS = 6, 15
 #: Said of the standard errors of a fit to a master curve, whose points of one temperature move
 #: together, which no misfit shows
 SHIFT_NOTE = (
@@ -72,6 +74,19 @@ class Parameter:
     def label(self) -> str:
         """Name as a key of &material, with the number of its term."""
         return f"{self.name}({self.term})" if self.term else self.name
+
+    @property
+    def digits(self) -> int:
+        """Digits that are written: two more than the standard error leaves, at least six."""
+        if not self.value or not self.error:
+            return MOST_DIGITS
+        sure = math.ceil(math.log10(abs(self.value) / self.error))
+        return min(max(LEAST_DIGITS, sure + 2), MOST_DIGITS)
+
+    @property
+    def rounded(self) -> float:
+        """The value with these digits, or as it was given."""
+        return self.value if self.state == "fixed" else float(f"{self.value:.{self.digits - 1}e}")
 
 
 @dataclass(frozen=True)
@@ -366,8 +381,9 @@ def group_of(
         keys["density"] = density
     keys["poisson_ratio"] = poisson_ratio
     for one in parameters:
-        keys[one.name] = [*keys.get(one.name, []), one.value] if one.term else one.value
-    keys |= {"valid_from": samples.first_time, "valid_to": samples.last_time}
+        keys[one.name] = [*keys.get(one.name, []), one.rounded] if one.term else one.rounded
+    ends = {"valid_from": samples.first_time, "valid_to": samples.last_time}
+    keys |= {key: float(f"{time:.{LEAST_DIGITS}g}") for key, time in ends.items()}
     quoted = _written(name, "name")
     try:
         case = Case(_CASE.format(quoted) + f"&material name = {quoted} /\n")
