@@ -112,6 +112,12 @@ int vcor_column_of(int table, int index, vcor_column *column);
 int vcor_axis(const vcor_case *self, int index, vcor_column *column, int *n, double **values,
               vcor_error *error);
 
+/* Keep the mesh that suits the case as it is now for all that is solved from it later, until vcor_set
+ * changes a number of &solver. On one mesh results follow the parameters steadily, as differences of
+ * neighbours need it; the error of a point far away may be larger than it states. Only waves = 'body' and method
+ * 'coupled' have a mesh to keep. */
+int vcor_settle(vcor_case *self, vcor_error *error);
+
 /* Solve n points, in each of which m addresses have values of their own.
  *
  *   values   n rows of m numbers: values[i*m + j] at addresses[j] in point i

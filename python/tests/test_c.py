@@ -59,6 +59,7 @@ def arguments(case):
             "case": case, "index?": 0, "column": byref(column), "n": byref(count),
             "values": byref(text),
         },
+        "vcor_settle": {"case": case},
         "vcor_solve": {
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "k?": 1, "columns": cor, "results": doubles(0.0), "threads?": 1,

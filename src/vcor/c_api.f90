@@ -27,6 +27,7 @@ module vcor_c_api
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
+   use vcor_solver, only : settle, solver_t
    use vcor_sweep_points, only : default_threads, failures_t, most_threads, new_sweep, &
       solve_point, solve_points, sweep_t, worker_t
    use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
@@ -40,8 +41,8 @@ module vcor_c_api
    private
 
    public :: vcor_library_version, vcor_read, vcor_free, vcor_add_materials, vcor_set, vcor_get, &
-      vcor_describe, vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
-      vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
+      vcor_describe, vcor_case_text, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
+      vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
 
    !> Target of a `vcor_case`
    type :: handle_t
@@ -51,6 +52,8 @@ module vcor_c_api
       type(sweep_t) :: sweep
       !> Addresses for which `sweep` was built; unallocated if it must be built
       type(address_t), allocatable :: built_for(:)
+      !> Solver that has been settled on the mesh of an impact; unallocated: each has its own
+      class(solver_t), allocatable :: solver
    end type handle_t
 
    !> Tables for `vcor_column_of`
@@ -168,6 +171,8 @@ contains
             ! the points bring values for the addresses for which it was built
             if (all(.not. handle%built_for == place)) deallocate (handle%built_for)
          end if
+         if (allocated(handle%solver) .and. place%group == find_group('solver')) &
+            deallocate (handle%solver)
       end if
 !$omp end critical (vcor_c_api)
       code = report_error(trouble, error)
@@ -327,6 +332,40 @@ contains
 !$omp end critical (vcor_c_api)
       code = report_error(trouble, error)
    end function vcor_axis
+
+   !> Keep the mesh that suits a case for all that is solved from it later
+   function vcor_settle(self, error) bind(c) result(code)
+      type(c_ptr), value :: self, error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(problem_t) :: problem
+      type(c_ptr) :: none(0)
+      real(wp) :: nothing(0, 1)
+
+      call open_case(self, handle, trouble)
+!$omp critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         if (allocated(handle%solver)) deallocate (handle%solver)
+         if (allocated(handle%built_for)) deallocate (handle%built_for)
+         call build(handle, none, nothing, trouble)
+         problem = handle%sweep%problem
+      end if
+!$omp end critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         call settle(problem%solver, problem%impact, trouble)
+!$omp critical (vcor_c_api)
+         if (allocated(trouble)) then
+            trouble%message = handle%case%source//': '//trouble%message
+         else
+            call move_alloc(problem%solver, handle%solver)
+         end if
+         if (allocated(handle%built_for)) deallocate (handle%built_for)
+!$omp end critical (vcor_c_api)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_settle
 
    !> Solve points
    function vcor_solve(self, m, address_list, n, value_table, k, column_list, result_table, &
@@ -719,6 +758,10 @@ contains
          return
       end do
       handle%sweep%grid%is_list = size(addresses) > 0
+      if (allocated(handle%solver)) then
+         deallocate (handle%sweep%problem%solver)
+         allocate (handle%sweep%problem%solver, source=handle%solver)
+      end if
       handle%built_for = places
    end subroutine build
 

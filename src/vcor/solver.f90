@@ -16,7 +16,7 @@ module vcor_solver
    private
 
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
-   public :: default_accuracy
+   public :: default_accuracy, settle
 
    !> The method `auto`: the coupled contact for waves in a plate of any thickness; product
    !> integration for the paper's variants, a frozen plate, the second Volterra term and going on
@@ -190,6 +190,22 @@ contains
       if (.not. allocated(error)) call solve_by(solver, impact, course, outcome, error)
       if (present(trajectory)) trajectory = course
    end subroutine solve_in_short
+
+   !> Keep the mesh that suits an impact for all that are solved later, whose results then follow
+   !> their numbers steadily, as differences need it. Only method coupled has one
+   subroutine settle(solver, impact, error)
+      class(solver_t), intent(inout) :: solver
+      type(impact_t), intent(in) :: impact
+      !> Why the impact has no result; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      select type (solver)
+      type is (coupled_t)
+         call solver%settle(impact, error)
+      type is (auto_t)
+         if (impact%face%has_waves) call solver%coupled%settle(impact, error)
+      end select
+   end subroutine settle
 
    !> Build a solver for an impact
    subroutine new_solver_for_impact(solver, settings, impact, error)

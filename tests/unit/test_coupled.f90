@@ -44,6 +44,7 @@ program test_coupled
    call test_meshes()
    call test_edge()
    call test_sharing()
+   call test_settled()
    call test_punch()
    call test_gravity()
    call test_end_of_contact()
@@ -644,6 +645,36 @@ contains
          deallocate (alone)
       end do
    end subroutine test_sharing
+
+   !> Neighbours of an impact take its mesh, whatever suits them, until another one is settled
+   subroutine test_settled()
+      real(wp), parameter :: velocity(*) = [1.6_wp, 1.7_wp, 1.8_wp]
+      type(coupled_t), allocatable :: solver
+      type(impact_t) :: impact
+      type(trajectory_t) :: near, own
+      type(error_t), allocatable :: error
+      real(wp) :: step
+      integer :: i
+
+      allocate (solver)
+      call new_coupled(solver, solver_settings_t())
+      do i = 1, size(velocity)
+         call make_impact(impact, rubber(0.45_wp), base_free, 0.02_wp, velocity(i), 0.03_wp, &
+            sphere(0.01_wp))
+         if (i /= 2) call solver%settle(impact, error)
+         call success(error, "an impact is settled")
+         call solver%solve(impact, near, error)
+         call success(error, "a neighbour is solved")
+         call solve(impact, own)
+         call check_close(cor_of(impact, near), cor_of(impact, own), accuracy, &
+            "it is as good on the mesh of the other")
+         if (i == 1) step = near%state(col_time, 1)
+         if (i == 2) call check(abs(near%state(col_time, 1) - step) <= 0.0_wp, "steps are kept")
+         if (i == 2) call check(abs(own%state(col_time, 1) - step) > 0.0_wp, "others suit it")
+         if (i == 3) call check(abs(near%state(col_time, 1) - own%state(col_time, 1)) <= 0.0_wp, &
+            "an impact that is settled has its own steps")
+      end do
+   end subroutine test_settled
 
    !> A flat punch, without inertia a damped oscillator, and with inertia on a layer
    subroutine test_punch()

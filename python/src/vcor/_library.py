@@ -151,6 +151,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_describe": [c_void_p, c_char_p, POINTER(ColumnStruct)],
     "vcor_case_text": [c_void_p, c_int, POINTER(c_void_p)],
     "vcor_axis": [c_void_p, c_int, POINTER(ColumnStruct), POINTER(c_int), POINTER(c_void_p)],
+    "vcor_settle": [c_void_p],
     "vcor_solve": [
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],

@@ -458,6 +458,21 @@ class Case:
                       len(names), wanted, results, threads)  # fmt: skip
         return results, remark
 
+    def _settled(self, addresses: Sequence[str], values: Floats) -> Case:
+        """A copy with values, of which all is solved on the mesh that suits it, for differences."""
+        near = self.copy()
+        for address, value in zip(addresses, values, strict=True):
+            near[address] = float(value)
+        # where it has no result, its neighbours are solved as others
+        with contextlib.suppress(Error):
+            call("vcor_settle", near._pointer)
+        return near
+
+    @property
+    def _has_mesh(self) -> bool:
+        """Whether the method in use has a mesh of its own for each impact."""
+        return self["plate.waves"] == "body" or self["solver.method"] == "coupled"
+
     def _solve_all(
         self,
         addresses: list[str],

@@ -5,7 +5,7 @@
 !> distance from what the next coarser mesh gives, which has half of the steps, fewer springs and
 !> fewer hats. The mesh is refined until the accuracy is reached. Window and radius of the row
 !> follow the contact and are rounded up, so that neighbours in a sweep share kernels; a kernel is
-!> the same whether it is shared or not.
+!> the same whether it is shared or not. For differences the mesh of one impact is kept for others.
 module vcor_solver_coupled
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_face, only : face_t
@@ -32,6 +32,16 @@ module vcor_solver_coupled
    !> Places for kernels, and their largest size in real numbers, 64 MB
    integer, parameter :: slots = 64, most_numbers = 8000000
 
+   !> Mesh of an impact
+   type :: plan_t
+      !> Level; -1: to be found
+      integer :: level = -1
+      !> Duration of all steps [s] and radius of the row of springs [m]
+      real(wp) :: window = 0.0_wp, radius = 0.0_wp
+      !> Duration of all steps for the largest force [s]; 0 if it needs none of its own
+      real(wp) :: peak_window = 0.0_wp
+   end type plan_t
+
    !> The coupled contact
    type, extends(solver_t) :: coupled_t
       private
@@ -42,8 +52,11 @@ module vcor_solver_coupled
       integer :: newest = slots
       !> Steps that the impact has taken so far
       integer :: work = 0
+      !> Mesh of the impact solved last, and that which all take
+      type(plan_t) :: found, kept
    contains
       procedure :: solve
+      procedure :: settle
    end type coupled_t
 
    !> A mesh on which an impact is solved twice
@@ -107,6 +120,20 @@ contains
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('coupled')
    end subroutine new_coupled
 
+   !> Keep the mesh that suits an impact for all that are solved later, so that their results follow
+   !> their numbers steadily
+   subroutine settle(self, impact, error)
+      class(coupled_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      type(error_t), allocatable, intent(out) :: error
+
+      type(trajectory_t) :: trajectory
+
+      self%kept = plan_t()
+      call self%solve(impact, trajectory, error)
+      self%kept = self%found
+   end subroutine settle
+
    !> Compute the course of an impact
    subroutine solve(self, impact, trajectory, error)
       class(coupled_t), intent(inout) :: self
@@ -118,16 +145,21 @@ contains
       real(wp), parameter :: careful = 2.0_wp
       ! relative error of the largest force from which it is computed again, if it comes early
       real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
+      ! window of that computation divided by the time of the largest force
+      real(wp), parameter :: longer = 3.0_wp
       type(pair_t) :: before, now
       type(course_t) :: course
       type(search_t) :: search
-      real(wp) :: cor_error
+      real(wp) :: cor_error, peak_window
       integer :: level, status
 
       search%end_time = self%settings%end_time
       if (.not. search%end_time > 0.0_wp) search%end_time = impact%patience(impact%time_scale())
       self%work = 0
-      level = -1
+      self%found = plan_t()
+      search%window = self%kept%window
+      search%radius = self%kept%radius
+      level = min(self%kept%level, 0)
       do
          if (level < 0) then
             call scout(self, impact, search, course, error)
@@ -154,9 +186,10 @@ contains
          if (level > 0) then
             cor_error = distance(before%coarse%cor(impact), before%fine%cor(impact), &
                now%coarse%cor(impact), now%fine%cor(impact))
-            if (cor_error <= self%settings%accuracy) exit
+            if (level == self%kept%level .or. &
+                cor_error <= self%settings%accuracy .and. self%kept%level < 0) exit
             ! steps that do not resolve the contact tell nothing
-            if (level == finest .or. now%coarse%dt*resolved <= impact%time_scale() .and. &
+            if (level == finest .or. self%kept%level < 0 .and. now%coarse%dt*resolved <= impact%time_scale() .and. &
                 cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
                call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
                   //'solver.accuracy, '//as_text(self%settings%accuracy)//', by ' &
@@ -178,12 +211,16 @@ contains
       trajectory%cor_error = trajectory%cor_sphere_error
       trajectory%max_force_error = distance(before%coarse_force, before%fine_force, &
          now%coarse_force, now%fine_force)*careful
+      peak_window = self%kept%peak_window
       ! at first contact there is none that shorter steps would resolve
-      if (trajectory%max_force_error > sharp*now%max_force .and. &
+      if (self%kept%level < 0 .and. trajectory%max_force_error > sharp*now%max_force .and. &
           now%time_of_max_force < early*now%contact_time .and. &
-          now%time_of_max_force > now%fine%dt) call resolve_peak(self, impact, search%radius, &
+          now%time_of_max_force > now%fine%dt) peak_window = rounded(longer*now%time_of_max_force, &
+         window_ratio)
+      if (peak_window > 0.0_wp) call resolve_peak(self, impact, search%radius, peak_window, &
          trajectory, error)
       if (allocated(error)) return
+      self%found = plan_t(level, search%window, search%radius, peak_window)
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
 
@@ -401,17 +438,17 @@ contains
 
    !> Compute the largest force again in a shorter window, as on a light plate the contact lasts
    !> long after it. What comes later does not change it
-   subroutine resolve_peak(self, impact, radius, trajectory, error)
+   subroutine resolve_peak(self, impact, radius, window, trajectory, error)
       type(coupled_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Radius of the row of springs [m]
       real(wp), intent(in) :: radius
+      !> Duration of all steps [s]
+      real(wp), intent(in) :: window
       !> The course of the impact, recorded
       type(trajectory_t), intent(inout) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      ! window divided by the time of the largest force
-      real(wp), parameter :: longer = 3.0_wp
       type(peak_t) :: top(2)
       type(course_t) :: course
       type(mesh_t) :: mesh
@@ -419,8 +456,7 @@ contains
       integer :: level, i
 
       do level = 0, 1
-         mesh = mesh_of(level, impact%face, &
-            rounded(longer*trajectory%time_of_max_force, window_ratio), radius)
+         mesh = mesh_of(level, impact%face, window, radius)
          do i = 2, 1, -1
             call run(self, impact, mesh, course, error)
             if (allocated(error) .or. course%status == course_outgrows) return

@@ -400,7 +400,7 @@ def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[flo
     trial = probe(problem.case, grid, name)
 
     def cor(steps: Floats) -> Floats:
-        return trial.predict(problem.case, problem.free, np.exp(x + steps))
+        return trial.predict(problem.case, problem.free, np.exp(x + steps), np.exp(x))
 
     slope = slopes(cor, len(x), STEP)
     deviation = np.sqrt(np.einsum("ij,jk,ik->i", slope, covariance, slope))
@@ -427,8 +427,8 @@ def _tangents(problem: Problem, x: Floats, covariance: Floats) -> Iterator[Tange
 
         def results(steps: Floats, block: Impacts = block, i: int = i) -> Floats:
             values, names = np.exp(x + steps), ["peak_loss_tangent", "contact_time"]
-            found: Floats = block.quantities(case, free, values, names, np.array([i]))[:, 0]
-            return found
+            found = block.quantities(case, free, values, names, np.array([i]), np.exp(x))
+            return found[:, 0]
 
         tangent, time = results(np.zeros((1, len(x))))[0]
         if not np.isfinite(tangent):

@@ -86,11 +86,11 @@ class Problem:
         errors = [block.error_of_model(self.case, self.free, np.exp(x)) for block in self.blocks]
         return np.concatenate(errors)
 
-    def predict(self, x: Floats) -> Floats:
-        """Data for each row of x, shape (rows, data)."""
-        values = np.exp(x)
+    def predict(self, x: Floats, near: Floats | None = None) -> Floats:
+        """Data for each row of x, shape (rows, data), on the meshes that suit the point `near`."""
+        values, middle = np.exp(x), None if near is None else np.exp(near)
         self.bar.update(len(x) * sum(len(impacts.velocity) for impacts in self.impacts))
-        return np.hstack([b.predict(self.case, self.free, values) for b in self.blocks])
+        return np.hstack([b.predict(self.case, self.free, values, middle) for b in self.blocks])
 
     def residuals(self, x: Floats) -> Floats:
         """Residuals at one point, shape (data,); the last data are kept."""
@@ -102,7 +102,7 @@ class Problem:
     def derivatives(self, x: Floats) -> tuple[Floats, float]:
         """Derivatives of the residuals, shape (data, parameters), and their error, a norm."""
         near, far = (
-            np.nan_to_num(slopes(lambda steps: self.predict(x + steps), len(x), step))
+            np.nan_to_num(slopes(lambda steps: self.predict(x + steps, x), len(x), step))
             / self.sigma[:, None]
             for step in (STEP, 2 * STEP)
         )
@@ -112,7 +112,9 @@ class Problem:
         """Derivatives of logarithms of quantities, shape (impacts and names, parameters)."""
 
         def logarithms(steps: Floats) -> Floats:
-            found = probe.quantities(self.case, self.free, np.exp(x + steps), list(names))
+            found = probe.quantities(
+                self.case, self.free, np.exp(x + steps), list(names), middle=np.exp(x)
+            )
             return np.log(np.abs(found.reshape(len(steps), -1)))
 
         return slopes(logarithms, len(x), STEP)
