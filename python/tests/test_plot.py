@@ -238,15 +238,27 @@ def test_measured_points(results, tmp_path):
         figure([results / "sweep.h5", tmp_path / "unit.csv"])
 
 
-def test_temperatures_are_shown_in_celsius(tmp_path):
+def test_temperatures_are_shown_in_celsius_on_request(tmp_path):
     case = vcor.read(SWEEPS / "squash_ball.nml")
     sweep = case.sweep({"impact.temperature": [283.15, 298.15, 313.15]}, ["cor"])
     points = tmp_path / "points.csv"
     points.write_text("temperature [K], cor\n298.15, 0.35\n")
-    axis = figure([sweep, points]).axes[0]
-    assert axis.get_xlabel() == "impact temperature [°C]"
-    (line, *_), shown = axis.lines, [tuple(one.get_xdata()) for one in axis.lines]
-    assert tuple(line.get_xdata()) == (10, 25, 40) and any(np.allclose(x, 25) for x in shown)
+    for celsius, unit, values in (
+        (False, "K", (283.15, 298.15, 313.15)),
+        (True, "°C", (10, 25, 40)),
+    ):
+        axis = figure([sweep, points], celsius=celsius).axes[0]
+        assert axis.get_xlabel() == f"impact temperature [{unit}]"
+        (line, *_), shown = axis.lines, [tuple(one.get_xdata()) for one in axis.lines]
+        assert tuple(line.get_xdata()) == values
+        assert any(np.allclose(x, values[1]) for x in shown)
+    pair = {"impact.temperature": [283.15, 298.15], "impact.velocity": [1.0, 2.0]}
+    texts = [
+        [one.get_text() for one in figure(case.sweep(pair, ["cor"]), kind="sweep", celsius=celsius)
+         .legends[0].get_texts()]
+        for celsius in (False, True)
+    ]  # fmt: skip
+    assert "impact temperature = 283.15 K" in texts[0] and "impact temperature = 10 °C" in texts[1]
 
 
 def test_axes_that_are_wanted(results):

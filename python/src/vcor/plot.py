@@ -108,6 +108,7 @@ def figure(
     levels: int | Sequence[float] = 8,
     hatch: bool = True,
     width: float | None = None,
+    celsius: bool = False,
     columns: Columns = None,
     units: Units = None,
 ) -> Figure:
@@ -140,6 +141,8 @@ def figure(
         Whether to hatch where the model does not hold.
     width
         Width [cm]; None: 8.5 for one panel, 17 for several.
+    celsius
+        Whether temperatures are shown in degrees Celsius in place of kelvin.
     columns, units
         Which columns of measured data are what, and their units, as for `vcor.read_data`.
 
@@ -150,7 +153,7 @@ def figure(
     """
     # a Dataset and a name are iterable, too
     files = [files] if isinstance(files, (xr.Dataset, str, Case)) else listed(files)
-    results = [Result(source) for source in files if is_result(source)]
+    results = [Result(source, celsius=celsius) for source in files if is_result(source)]
     data = [
         read_data(name, columns, units, whole=False)
         for name in files
@@ -172,6 +175,10 @@ def figure(
                          "measured points, expected one for each")  # fmt: skip
     for one, text in zip(data, labels, strict=False):
         one.attrs["label"] = text
+    for one in data if celsius else ():
+        for key in one:
+            if is_temperature(str(key)) and not str(key).endswith("_sigma"):
+                one[key] -= ZERO_C
     kind = kind or results[0].kind()
     if kind not in KINDS:
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
@@ -687,12 +694,11 @@ def _points(axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy:
 
 
 def _find(data: pd.DataFrame, name: str) -> tuple[Floats | None, Floats | None]:
-    """Values, temperatures in C, and standard errors of a quantity or an address, else None."""
-    zero = ZERO_C if is_temperature(name) else 0.0
+    """Values and standard errors of a quantity or an address, else None."""
     for key in (name, name.rpartition(".")[2]):
         if key in data:
             sigma = f"{key}_sigma"
-            return data[key].to_numpy() - zero, data[sigma].to_numpy() if sigma in data else None
+            return data[key].to_numpy(), data[sigma].to_numpy() if sigma in data else None
     return None, None
 
 
@@ -868,6 +874,7 @@ def _parser() -> _command.Parser:
     )
     add("--width", metavar="CM", type=_width,
         help=f"width in cm, or such as 85mm or 3.35in; default: {COLUMN} or {PAGE}")  # fmt: skip
+    add("--celsius", action="store_true", help="temperatures in degrees Celsius, not in kelvin")
     add("--output", metavar="PATH", help="NAME.svg, .pdf or .png, or a folder")
     add("--format", choices=FORMATS, help="format in a folder; default: svg")
     add("--script", action="store_true", help="leave the Python script that makes the figure")
@@ -883,6 +890,7 @@ def _settings(options: Any) -> dict[str, Any]:
     settings["legends"], settings["labels"] = options.legends or None, options.labels or None
     settings["xlabel"], settings["ylabel"] = options.xlabel, options.ylabel
     settings["hatch"] = None if options.hatch else False
+    settings["celsius"] = options.celsius or None
     if options.log is not None:
         settings["log"] = "" if options.log == "none" else options.log or "none"
     try:

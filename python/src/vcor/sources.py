@@ -31,7 +31,7 @@ IMPACT = """
 class Result:
     """Results of a file, of a case that is solved, of a sweep, or materials of a file."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: Source, *, celsius: bool = False) -> None:
         self._held: dict[str, xr.Dataset] = {}
         self.groups: set[str] = set()
         if isinstance(source, xr.Dataset):
@@ -49,7 +49,7 @@ class Result:
             self.summary = open_results(source)
             with h5py.File(self.path, "r") as file:
                 self.groups |= set(file)
-        self.summary = _in_celsius(self.summary)
+        self.summary = _in_celsius(self.summary) if celsius else self.summary
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
         #: What stands for it in a legend
@@ -94,7 +94,7 @@ class Result:
 
 
 def _in_celsius(data: xr.Dataset) -> xr.Dataset:
-    """The same with swept temperatures as they are shown."""
+    """The same with swept temperatures in degrees Celsius."""
     swept = {name: at for name, at in data.coords.items() if is_temperature(str(name))}
     return data.assign_coords(
         {name: (at - ZERO_C).round(9).assign_attrs(units="°C") for name, at in swept.items()}

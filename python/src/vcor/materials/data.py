@@ -197,7 +197,7 @@ def kelvin(text: str, what: str) -> float:
 
 
 def is_temperature(name: str) -> bool:
-    """Whether a quantity or an address is a temperature, which figures show in degrees Celsius."""
+    """Whether a quantity or an address is a temperature, which figures may show in °C."""
     return "temperature" in name.rpartition(".")[2]
 
 
