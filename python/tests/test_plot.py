@@ -252,13 +252,27 @@ def test_temperatures_are_shown_in_celsius_on_request(tmp_path):
         (line, *_), shown = axis.lines, [tuple(one.get_xdata()) for one in axis.lines]
         assert tuple(line.get_xdata()) == values
         assert any(np.allclose(x, values[1]) for x in shown)
-    pair = {"impact.temperature": [283.15, 298.15], "impact.velocity": [1.0, 2.0]}
+    pair = {"impact.temperature": [283.15, 298.15], "impact.velocity": [1.0, 2.0, 3.0]}
     texts = [
         [one.get_text() for one in figure(case.sweep(pair, ["cor"]), kind="sweep", celsius=celsius)
          .legends[0].get_texts()]
         for celsius in (False, True)
     ]  # fmt: skip
     assert "impact temperature = 283.15 K" in texts[0] and "impact temperature = 10 °C" in texts[1]
+
+
+@pytest.mark.parametrize("width, panels", [(6, 1), (8.5, 1), (17, 2)])
+def test_panels_have_room_at_every_width(results, tmp_path, width, panels):
+    """Those of a narrow figure are one below the other; no number of an axis is over another."""
+    made = figure([results / "cube.h5"], quantities=["cor", "contact_time"], width=width)
+    places = [
+        axis.get_subplotspec().get_gridspec().ncols for axis in made.axes if axis.get_title("left")
+    ]
+    assert places == [panels, panels]
+    made.savefig(tmp_path / "a.png")
+    for axis in made.axes:
+        boxes = [one.get_window_extent() for one in axis.get_xticklabels() if one.get_text()]
+        assert all(a.x1 < b.x0 for a, b in zip(boxes, boxes[1:], strict=False) if b.x0 > a.x0)
 
 
 def test_axes_that_are_wanted(results):
@@ -378,7 +392,7 @@ TITLE = "a_b {c} <d> & \"e\" 'f' h^2 @x ~y `z` $HOME$ $\\frac$ 100% α \\n"
 
 
 def test_texts_stand_for_themselves(results, tmp_path):
-    """No title is a formula, none leaves its line, and a long one is cut."""
+    """No title is a formula, none leaves its line, and none is cut."""
     files = [results / "sweep.h5", results / "soft.h5"]
     main([*map(str, files), "--legend", TITLE, "--legend", "plain", "--output", f"{tmp_path}/a.svg",
           "--quantity", "cor,max_force", "--quiet"])  # fmt: skip
@@ -386,7 +400,7 @@ def test_texts_stand_for_themselves(results, tmp_path):
     made = figure(files, legends=[TITLE, "ä" * 300], quantities=["cor", "max_force"])
     shown = texts(made)
     assert shown[0] == TITLE
-    assert re.fullmatch("ä{90,110}\nä{90,110} …", shown[1])
+    assert re.fullmatch("ä{90,110}\nä{90,110}\nä+", shown[1]) and shown[1].count("ä") == 300
     shutil.copy(results / "sweep.h5", tmp_path / "other.h5")
     with h5py.File(tmp_path / "other.h5", "a") as file:
         file.attrs["title"] = "two\nlines \x1b[31m"

@@ -49,8 +49,8 @@ from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
 KINDS = ("history", "loop", "moduli", "sweep", "map")
-#: Width of a column and of a page, height of a panel [cm]
-COLUMN, PAGE, HEIGHT = 8.5, 17.0, 6.5
+#: Width of a column and of a page, height of a panel, and least width of panels side by side [cm]
+COLUMN, PAGE, HEIGHT, NARROW = 8.5, 17.0, 6.5, 5.0
 #: Most levels of a map by their number
 _MOST_LEVELS = 50
 #: Widths that are drawn [cm], and units of length [cm]
@@ -67,6 +67,8 @@ _WORDS = {
 #: Hatching by what the column validity says, and its text
 _HATCHES = {"outside": ("/////", "outside of the model's validity"),
             "caution": ("//", "with caution: off by per cents")}  # fmt: skip
+#: Most lines of a text in a legend
+_MOST_LINES = 20
 #: Letters of a label for an inch, and the width of a panel that its numbers take [in]
 _LETTERS, _BESIDE = 15.0, 0.75
 #: Colours of a map, light enough for lines and hatching over them
@@ -300,7 +302,8 @@ def _history(wishes: _Wishes) -> Figure:
             _curve(axis, number, time[contact], values[contact], shown, linestyle="-")
             _curve(axis, number, time[ghost], values[ghost], None, linestyle="--")
             if ended:
-                _curve(axis, number, [end], [np.interp(end, time, values)], None, linestyle="")
+                _curve(axis, number, [end], [np.interp(end, time, values)], None, linestyle="",
+                       clip_on=False)  # fmt: skip
             if i == 0:
                 _points(axis, wishes.data, "time", name, factor, 1.0 / size)
         if one and ended:
@@ -632,8 +635,9 @@ def drawn(
 
 def _new(wishes: _Wishes, panels: int, columns: int) -> tuple[Figure, list[Axes]]:
     """A figure with panels, and letters on them if there are several."""
-    rows = -(-panels // columns)
     wide = wishes.width or (COLUMN if columns == 1 else PAGE)
+    columns = min(columns, max(1, int(wide / NARROW)))
+    rows = -(-panels // columns)
     made = Figure(figsize=(wide / 2.54, rows * HEIGHT / 2.54))
     axes = [made.add_subplot(rows, columns, i + 1) for i in range(panels)]
     if panels > 1:
@@ -657,11 +661,10 @@ def _legend(made: Figure) -> None:
     # letters that a line has room for
     room = round(16.5 * width) - 7
     columns = 2 if len(found) > 2 and max(map(len, found)) < room / 2 - 7 else 1
-    texts = []
-    for text in found:
-        first, *rest = textwrap.wrap(text, room) or [""]
-        cut = rest[1:] and f"{rest[0][: room - 2]} …"
-        texts.append("\n".join([first, *([cut] if cut else rest)]))
+    texts = [
+        "\n".join(textwrap.wrap(text, room, max_lines=_MOST_LINES, placeholder=" …"))
+        for text in found
+    ]
     lines = -(-sum(text.count("\n") + 1 for text in texts) // columns)
     above = 0.165 * lines + 0.06
     made.set_size_inches(width, height + above)
