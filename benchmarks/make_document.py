@@ -4,7 +4,7 @@
     make_document.py FOLDER      with accuracy.csv, modes.csv and comparison.csv, or sweeps.csv, or
                                  all of them
 
-Standard library only. Run by make_document.sh.
+Run by make_document.sh. The figure needs matplotlib.
 """
 
 import csv
@@ -19,12 +19,15 @@ TOP = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = TOP / "docs" / "performance.md"
 FIGURE = TOP / "docs" / "performance.svg"
 
-COLOURS = {
-    "sls": "#1f77b4",
-    "butyl_prony": "#d62728",
-    "butyl_cerf": "#2ca02c",
-    "butyl_power_law": "#9467bd",
+STYLE = TOP / "python/src/vcor/vcor.mplstyle"
+# Colour and name of each impact, symbol and name of each other solver
+PROBLEMS = {
+    "sls": ("C0", "SLS"),
+    "butyl_prony": ("C1", "Prony series"),
+    "butyl_cerf": ("C2", "CERF"),
+    "butyl_power_law": ("C3", "power law"),
 }
+SHAPES = {"cvode": ("^", "CVODE"), "runge_kutta": ("D", "Runge-Kutta"), "solve_ivp": ("s", "solve_ivp")}
 
 
 def read(path):
@@ -202,140 +205,45 @@ def machine():
 # Figure
 
 
-class Axes:
-    """A box with two logarithmic axes."""
-
-    def __init__(self, left, top, width, height, x, y):
-        self.left, self.top, self.width, self.height = left, top, width, height
-        self.x, self.y = x, y
-        self.parts = []
-
-    def at(self, x, y):
-        """Where a point is."""
-        a = (math.log(x) - math.log(self.x[0])) / (math.log(self.x[1]) - math.log(self.x[0]))
-        b = (math.log(y) - math.log(self.y[0])) / (math.log(self.y[1]) - math.log(self.y[0]))
-        return self.left + a * self.width, self.top + (1.0 - b) * self.height
-
-    def grid(self, x_ticks, y_ticks, x_label, y_label):
-        """Lines, labels and the box."""
-        bottom, right = self.top + self.height, self.left + self.width
-        for value, text in x_ticks:
-            x = self.at(value, self.y[0])[0]
-            self.parts.append(f'<path d="M{x:.1f} {self.top}V{bottom}" stroke="#ddd"/>')
-            self.text(x, bottom + 18, text, "middle")
-        for value, text in y_ticks:
-            y = self.at(self.x[0], value)[1]
-            self.parts.append(f'<path d="M{self.left} {y:.1f}H{right}" stroke="#ddd"/>')
-            self.text(self.left - 8, y + 4, text, "end")
-        self.parts.append(
-            f'<rect x="{self.left}" y="{self.top}" width="{self.width}" height="{self.height}" '
-            'fill="none" stroke="#000"/>'
-        )
-        self.text(self.left + self.width / 2, bottom + 38, x_label, "middle")
-        x, y = self.left - 48, self.top + self.height / 2
-        self.parts.append(
-            f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="middle" '
-            f'transform="rotate(-90 {x:.1f} {y:.1f})">{y_label}</text>'
-        )
-
-    def text(self, x, y, text, anchor="start", colour="#000"):
-        """A label."""
-        self.parts.append(
-            f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{colour}">{text}</text>'
-        )
-
-    def line(self, points, colour, dashes=""):
-        """A polyline through points of the axes."""
-        path = "L".join(f"{x:.1f} {y:.1f}" for x, y in (self.at(*point) for point in points))
-        style = f' stroke-dasharray="{dashes}"' if dashes else ""
-        self.parts.append(
-            f'<path d="M{path}" fill="none" stroke="{colour}" stroke-width="1.5"{style}/>'
-        )
-
-    def mark(self, x, y, shape, colour):
-        """A symbol at a point of the axes."""
-        self.symbol(*self.at(x, y), shape, colour)
-
-    def symbol(self, x, y, shape, colour):
-        """A symbol."""
-        shapes = {
-            "circle": f"M{x - 3:.1f} {y:.1f}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0z",
-            "square": f"M{x - 4:.1f} {y - 4:.1f}h8v8h-8z",
-            "triangle": f"M{x:.1f} {y - 5:.1f}l5 9h-10z",
-            "diamond": f"M{x:.1f} {y - 5:.1f}l5 5l-5 5l-5 -5z",
-        }
-        fill = colour if shape == "circle" else "#fff"
-        self.parts.append(f'<path d="{shapes[shape]}" fill="{fill}" stroke="{colour}"/>')
-
-
-def power(exponent):
-    """A power of ten."""
-    return f'10<tspan dy="-5" font-size="9">{str(exponent).replace("-", "−")}</tspan>'
-
-
 def figure(accuracy, comparison, modes):
-    """Error over time, and time over modes."""
-    left = Axes(72, 16, 420, 380, (1e0, 1e6), (1e-13, 1e-2))
-    left.grid(
-        [(10.0**n, power(n)) for n in range(0, 7)],
-        [(10.0**n, power(n)) for n in range(-13, -1)],
-        "time per impact, µs",
-        "error of the COR, absolute",
-    )
-    for problem, colour in COLOURS.items():
-        for method, dashes in (("ive", ""), ("direct", "5 4")):
-            # several accuracies can give the same panels
-            points = {
-                row["error"]: (float(row["microseconds"]), max(float(row["error"]), 1.1e-13))
-                for row in accuracy
-                if (row["problem"], row["method"]) == (problem, method)
-            }
-            if points:
-                left.line(points.values(), colour, dashes)
-                for point in points.values():
-                    left.mark(*point, "circle", colour)
-    shapes = {"cvode": "triangle", "runge_kutta": "diamond", "solve_ivp": "square"}
-    for row in comparison:
-        if row["solver"] in shapes:
-            left.mark(
-                float(row["microseconds"]),
-                float(row["error"]),
-                shapes[row["solver"]],
-                COLOURS[row["problem"]],
-            )
+    """Write error over time, and time over modes."""
+    # only who has measured anew needs it
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
 
-    right = Axes(570, 16, 220, 380, (0.9, 300.0), (1e0, 1e3))
-    right.grid(
-        [(2.0**n, str(2**n)) for n in range(0, 9, 2)],
-        [(10.0**n, power(n)) for n in range(0, 4)],
-        "terms of the Prony series",
-        "time per impact, µs",
-    )
-    points = [(float(row["modes"]), float(row["microseconds"])) for row in modes]
-    right.line(points, "#1f77b4")
-    for point in points:
-        right.mark(*point, "circle", "#1f77b4")
-
-    x, y = 72, 460
-    for i, (problem, colour) in enumerate(COLOURS.items()):
-        left.parts.append(f'<path d="M{x + 125 * i} {y}h20" stroke="{colour}" stroke-width="2"/>')
-        left.text(x + 125 * i + 26, y + 4, problem)
-    y += 22
-    for i, (text, dashes) in enumerate((("ive", ""), ("direct", ' stroke-dasharray="5 4"'))):
-        left.parts.append(f'<path d="M{x + 125 * i} {y}h20" stroke="#000"{dashes}/>')
-        left.text(x + 125 * i + 26, y + 4, text)
-    names = {"cvode": "CVODE", "runge_kutta": "Runge-Kutta", "solve_ivp": "solve_ivp"}
-    for i, (solver, shape) in enumerate(shapes.items()):
-        left.symbol(x + 260 + 125 * i, y, shape, "#000")
-        left.text(x + 276 + 125 * i, y + 4, names[solver])
-
-    body = "\n".join(left.parts + right.parts)
-    return (
-        '<svg xmlns="http://www.w3.org/2000/svg" width="820" height="500" viewBox="0 0 820 500" '
-        'font-family="sans-serif" font-size="12">\n'
-        "<title>Cost of accuracy, and of internal variables</title>\n"
-        f'<rect width="820" height="500" fill="#fff"/>\n{body}\n</svg>\n'
-    )
+    with rc_context(fname=STYLE):
+        made = Figure(figsize=(6.7, 3.2), layout="constrained")
+        left, right = made.subplots(1, 2, width_ratios=(2, 1))
+        for problem, (colour, name) in PROBLEMS.items():
+            for method, line in (("ive", "-"), ("direct", "--")):
+                # several accuracies can give the same panels; an error of rounding is at the edge
+                points = {
+                    row["error"]: (float(row["microseconds"]), max(float(row["error"]), 1.1e-13))
+                    for row in accuracy
+                    if (row["problem"], row["method"]) == (problem, method)
+                }
+                if points:
+                    label = name if method == "ive" else ""
+                    left.loglog(*zip(*points.values()), color=colour, ls=line, marker=".", label=label)
+        for row in comparison:
+            if row["solver"] in SHAPES:
+                colour, _ = PROBLEMS[row["problem"]]
+                at = float(row["microseconds"]), float(row["error"])
+                left.loglog(*at, color=colour, ls="", marker=SHAPES[row["solver"]][0], mfc="white", ms=5)
+        for line, name in (("-", "ive"), ("--", "direct")):
+            left.plot([], [], color="0.3", ls=line, marker=".", label=name)
+        for shape, name in SHAPES.values():
+            left.plot([], [], color="0.3", ls="", marker=shape, mfc="white", ms=5, label=name)
+        left.set(xlabel="time per impact [\N{MICRO SIGN}s]", ylabel="error of the COR",
+                 xlim=(1, 1e6), ylim=(1e-13, 1e-4), title="(a) cost of accuracy")  # fmt: skip
+        made.legend(ncols=5, loc="outside lower center")
+        points = [(float(row["modes"]), float(row["microseconds"])) for row in modes]
+        right.loglog(*zip(*points), color="C0", ls="-", marker=".")
+        right.set_xscale("log", base=2)
+        right.set(xlabel="terms of the Prony series", ylabel="time per impact [\N{MICRO SIGN}s]",
+                  ylim=(1, 1e3), title="(b) cost of terms")  # fmt: skip
+        right.xaxis.set_major_formatter("{x:.0f}")
+        made.savefig(FIGURE, metadata={"Date": None})
 
 
 def main():
@@ -352,7 +260,7 @@ def main():
         blocks["accuracy"] = accuracy_table(accuracy)
         blocks["modes"] = modes_table(modes)
         blocks["models"] = models_table(read(folder / "models.csv"))
-        FIGURE.write_text(figure(accuracy, comparison, modes))
+        figure(accuracy, comparison, modes)
         print(f"written {FIGURE.relative_to(TOP)}")
     # whole sweeps, where they were measured
     if (folder / "sweeps.csv").exists():

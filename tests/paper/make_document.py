@@ -5,10 +5,12 @@
 The text stands in document.md; {{NAME}} is replaced by what the functions below give for it.
 """
 
-import math
+import io
 import re
 
 import convergence
+from matplotlib import rc_context
+from matplotlib.figure import Figure
 from printed import HERE, ROOT, call, cor, named_step, outcome, read_table
 
 TEMPLATE = HERE / "document.md"
@@ -153,113 +155,29 @@ def volterra_table():
 # Figure
 
 
-WIDTH, HEIGHT = 640, 480
-LEFT, RIGHT, TOP, BOTTOM = 72, 16, 16, 118
-# Decades of the axes: the step [s] and the error of the COR
-STEPS, ERRORS = (-7.4, -5.0), (-9.0, -1.0)
-# Marker, dashes and grey of each series
-STYLES = [
-    ("circle", "", "#000"),
-    ("square", "", "#000"),
-    ("triangle", "", "#000"),
-    ("circle", "5 3", "#777"),
-    ("triangle", "5 3", "#777"),
-]
-# Legend: first line, columns, lines in each
-LEGEND = (LEFT, HEIGHT - 52)
-COLUMN, LINES = 262, 3
-
-
-def place(step, error):
-    """Point of the figure for a step [s] and an error."""
-    across = (math.log10(step) - STEPS[0]) / (STEPS[1] - STEPS[0])
-    up = (math.log10(error) - ERRORS[0]) / (ERRORS[1] - ERRORS[0])
-    return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - up * (HEIGHT - TOP - BOTTOM)
-
-
-def marker(shape, x, y, colour):
-    """A mark on a line."""
-    if shape == "circle":
-        return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="{colour}"/>'
-    if shape == "square":
-        return (
-            f'<rect x="{x - 3.5:.1f}" y="{y - 3.5:.1f}" width="7" height="7" '
-            f'fill="#fff" stroke="{colour}" stroke-width="1.5"/>'
-        )
-    return (
-        f'<path d="M{x:.1f} {y - 4.5:.1f}l4.5 8h-9z" '
-        f'fill="#fff" stroke="{colour}" stroke-width="1.5"/>'
-    )
-
-
-def label(x, y, text, anchor="middle", more=""):
-    """A text."""
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{more}>{text}</text>'
-
-
-def power(exponent):
-    """A power of ten below one."""
-    return f'10<tspan dy="-5" font-size="9">\u2212{-exponent}</tspan>'
-
-
-def axes():
-    """Frame, grid and labels."""
-    bottom, right = HEIGHT - BOTTOM, WIDTH - RIGHT
-    parts = []
-    for exponent in range(int(ERRORS[0]), int(ERRORS[1]) + 1):
-        _, y = place(1e-6, 10.0**exponent)
-        parts.append(f'<path d="M{LEFT} {y:.1f}H{right}" stroke="#ddd"/>')
-        parts.append(label(LEFT - 8, y + 4, power(exponent), "end"))
-    for name, step in [
-        ("0.05", 5e-8),
-        ("0.1", 1e-7),
-        ("0.2", 2e-7),
-        ("0.5", 5e-7),
-        ("1", 1e-6),
-        ("2", 2e-6),
-        ("5", 5e-6),
-        ("10", 1e-5),
-    ]:
-        x, _ = place(step, 1e-6)
-        parts.append(f'<path d="M{x:.1f} {TOP}V{bottom}" stroke="#ddd"/>')
-        parts.append(label(x, bottom + 18, name))
-    parts.append(
-        f'<rect x="{LEFT}" y="{TOP}" width="{right - LEFT}" height="{bottom - TOP}" '
-        'fill="none" stroke="#000"/>'
-    )
-    parts.append(label((LEFT + right) / 2, bottom + 38, "time step, \u00b5s"))
-    middle = (TOP + bottom) / 2
-    turn = f' transform="rotate(-90 18 {middle:.1f})"'
-    parts.append(label(18, middle, "error of the COR, absolute", more=turn))
-    return parts
+# Colour, line and marker of each series: a colour is a kernel, a marker a scheme
+STYLES = [("C0", "-", "o"), ("C0", "-", "s"), ("C0", "-", "^"), ("C1", "--", "o"), ("C1", "--", "^")]
 
 
 def figure():
     """Errors against the step, both axes logarithmic, as SVG."""
-    parts = axes()
-    for i, series in enumerate(convergence.ALL):
-        shape, dashes, colour = STYLES[i]
-        points = [
-            place(1e-6 * step, abs(error))
-            for step, error in zip(series.steps, series.errors(), strict=True)
-            if abs(error) >= series.floor
-        ]
-        path = "L".join(f"{x:.1f} {y:.1f}" for x, y in points)
-        dash = f' stroke-dasharray="{dashes}"' if dashes else ""
-        line = f'fill="none" stroke="{colour}" stroke-width="1.5"{dash}'
-        parts.append(f'<path d="M{path}" {line}/>')
-        parts += [marker(shape, x, y, colour) for x, y in points]
-        x0, y = LEGEND[0] + COLUMN * (i // LINES), LEGEND[1] + 18 * (i % LINES)
-        parts.append(f'<path d="M{x0} {y}H{x0 + 32}" {line}/>')
-        parts.append(marker(shape, x0 + 16, y, colour))
-        parts.append(label(x0 + 40, y + 4, series.name, "start"))
-    body = "\n".join(parts)
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
-        f'viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">\n'
-        "<title>Error of the coefficient of restitution against the time step</title>\n"
-        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>\n{body}\n</svg>\n'
-    )
+    with rc_context(fname=ROOT / "python/src/vcor/vcor.mplstyle"):
+        made = Figure(figsize=(5.2, 3.4), layout="constrained")
+        axis = made.subplots()
+        for series, (colour, line, marker) in zip(convergence.ALL, STYLES, strict=True):
+            points = [
+                (step, abs(error))
+                for step, error in zip(series.steps, series.errors(), strict=True)
+                if abs(error) >= series.floor
+            ]
+            look = {"color": colour, "linestyle": line, "marker": marker, "markerfacecolor": "white"}
+            axis.loglog(*zip(*points, strict=True), label=series.name, **look)
+        axis.set(xlabel="time step [\N{MICRO SIGN}s]", ylabel="error of the COR", ylim=(1e-9, 1e-1))
+        axis.xaxis.set_major_formatter("{x:g}")
+        made.legend(ncols=2, loc="outside lower center")
+        text = io.StringIO()
+        made.savefig(text, format="svg", metadata={"Date": None})
+    return text.getvalue()
 
 
 # Document
