@@ -295,6 +295,13 @@ def test_model_error_is_the_distance_to_the_exact_mechanics(half_space):
     assert found.dominant == "model"
 
 
+def test_a_layer_without_waves_is_compared_with_its_waves(half_space):
+    half_space["plate.base"] = "bonded"
+    half_space["contact.law"] = "receding"
+    found = vcor.propagate(half_space, {"rubber.beta": 0.01}, samples=64, quantities=["cor"])
+    assert float(found.table.model.sel(quantity="cor")) > 1e-5
+
+
 def test_the_same_seed_gives_the_same_numbers(sls):
     one, two = (vcor.propagate(sls, {"rubber.beta": "5%"}, samples=64) for _ in range(2))
     assert one.as_dict() == two.as_dict()

@@ -56,6 +56,21 @@ def test_sweep_leans(vcor):
     assert "impact.velocity = 50" in done.err
 
 
+@pytest.mark.parametrize("plate", ["half_thickness=0.02", "thickness=0.04", None])
+def test_exact_mechanics_rely_on_the_data_as_others(vcor, tmp_path, plate):
+    """The change is that of the thin plate, or of a half space without waves."""
+    text = re.sub(r"half_thickness *= *[^,/\s]+,?", "", POWER_LAW.read_text())
+    case = tmp_path / "case.nml"
+    case.write_text(re.sub(r"&plate", f"&plate {plate + ',' if plate else ''}", text)
+                    .replace("&case", "&contact mechanics = 'exact' /\n&case"))  # fmt: skip
+    waves = "hereditary" if plate else "none"
+    band = "butyl.valid_from=1e-6"
+    exact, other = (warning(vcor, "--set", f"plate.waves={one}", "--set", band, name=case)
+                    for one in ("body", waves))  # fmt: skip
+    assert "'butyl'" in exact and exact.count("\n") == 1
+    assert change(exact) == pytest.approx(change(other), rel=0.3)
+
+
 def test_band_is_checked(vcor):
     words = ["--set", "butyl.valid_from=1e-3", "--set", "butyl.valid_to=1e-4"]
     vcor.refuses("run", POWER_LAW, *words, code=INPUT, says="valid_from < valid_to")

@@ -514,7 +514,7 @@ def _exact(case: Case, quantities: list[str]) -> Floats:
     """Results of the exact linear theory; nan if they cannot be had."""
     exact, found = case, np.full(len(quantities), np.nan)
     for address, value in EXACT.items():
-        if address == "plate.waves" and case[address] == "none" and not _could_bend(case):
+        if address == "plate.waves" and case[address] == "none" and not _has_thickness(case):
             continue
         trial = exact.copy()
         try:
@@ -529,10 +529,9 @@ def _exact(case: Case, quantities: list[str]) -> Floats:
     return found
 
 
-def _could_bend(case: Case) -> bool:
-    """Whether a plate has a thickness and a free back."""
-    thickness = [case[f"plate.{name}"] for name in ("half_thickness", "thickness")]
-    return case["plate.base"] == "free" and any(thickness)
+def _has_thickness(case: Case) -> bool:
+    """Whether the plate is a plate, or a layer on a base."""
+    return any(case[f"plate.{name}"] for name in ("half_thickness", "thickness"))
 
 
 def _values(case: Case, quantities: list[str]) -> Floats:

@@ -4,12 +4,13 @@
 !> change of the coefficient of restitution if the modulus is held constant outside of the band,
 !> E(t) = E(valid_from) before it and E(valid_to) after it, the effect of the extrapolation on the
 !> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
-!> of exponentials would continue to grow before the band.
+!> of exponentials would continue to grow before the band. A plate of any thickness has the change
+!> of the thin plate, a half space or a layer on a base that without waves.
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_body, only : material_of_case
-   use vcor_case_problem, only : solve_case
+   use vcor_case_problem, only : has_body, solve_case
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
@@ -58,6 +59,20 @@ contains
       call case%unset(case%address('material', 'shift', item))
    end subroutine take_as_is
 
+   !> Replace waves in a plate of any thickness by those of a thin plate, if it is free
+   pure subroutine simplify(case)
+      type(case_t), intent(inout) :: case
+
+      character(len=:), allocatable :: base, waves
+      logical :: is_thick
+
+      call case%get('plate', 'base', base)
+      is_thick = .not. (case%given('plate', 'thickness') .or. case%given('plate', 'half_thickness'))
+      waves = 'hereditary'
+      if (is_thick .or. base /= 'free') waves = 'none'
+      call case%set(case%address('plate', 'waves'), waves, given=.true.)
+   end subroutine simplify
+
    !> Find the reliance of an impact on a material beyond its data
    subroutine find_reliance(reliance, case, item, contact_time)
       !> The reliance
@@ -75,6 +90,7 @@ contains
       type(error_t), allocatable :: error
       real(wp), allocatable :: times(:), moduli(:)
       real(wp) :: first, last
+      logical :: is_body
 
       reliance%item = item
       call material_of_case(case, item, material, error)
@@ -97,13 +113,15 @@ contains
       allocate (moduli(size(times)))
       moduli = material%relaxation(times)
       other = case
+      is_body = has_body(case)
+      if (is_body) call simplify(other)
       call other%set(other%address('solver', 'method'), 'direct', given=.true.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.true.)
       call other%set(other%address('solver', 'accuracy'), 0.1_wp*reported_change)
       call other%unset(other%address('solver', 'time_step'))
       call solve_case(other, free, error)
       if (allocated(error) .or. free%status /= contact_separated) return
-      reliance%cor = free%cor
+      reliance%cor = merge(free%cor_sphere, free%cor, is_body)
       call other%set(other%address('material', 'model', item), 'table', given=.true.)
       call take_as_is(other, item)
       call other%set(other%address('material', 'times', item), times, given=.true.)
@@ -111,8 +129,8 @@ contains
       call solve_case(other, held, error)
       reliance%solved = .not. allocated(error)
       if (reliance%solved) reliance%solved = held%status == contact_separated
-      reliance%held = held%cor
-      if (reliance%solved) reliance%change = abs(held%cor - free%cor)
+      reliance%held = merge(held%cor_sphere, held%cor, is_body)
+      if (reliance%solved) reliance%change = abs(reliance%held - reliance%cor)
       ! a contact that ends before the data begin relies on extrapolation only, whatever the change
       reliance%relies = reliance%change > reported_change &
          .or. (reliance%ends(1) .and. first > contact_time)
