@@ -340,6 +340,16 @@ def test_a_stopwatch(tmp_path):
     assert np.allclose(only.bounce_time, [0.5, 0.4, 0.3])
 
 
+def test_a_diameter_is_two_radii(tmp_path):
+    head = "v [m/s],{} [mm],cor\n"
+    for name in ("ball diameter", "Kugeldurchmesser", "diamètre de la bille", "直径"):
+        data = read(tmp_path, head.format(name) + "1,40,0.5\n2,30,0.4\n")
+        assert np.allclose(data.radius, [0.02, 0.015]) and "diameter" not in data
+        assert f"radius from 'half of {name} [mm]'" in data.attrs["taken"]
+    refused(tmp_path, "v [m/s],radius [mm],diameter [mm],cor\n1,20,40,0.5\n",
+            "both a radius and a diameter")  # fmt: skip
+
+
 def test_unknown_columns_of_impacts(tmp_path):
     said = refused(
         tmp_path, "velocity [m/s],core\n1,0.5\n", "found the column 'core'", "rebound_height"

@@ -557,6 +557,53 @@ def test_command_writes_case_numbers_and_figure(tmp_path, capsys):
     assert (tmp_path / "out" / "rubber_identified.svg").read_text().startswith("<?xml")
 
 
+BALL = """&impact velocity = 3.0, gravity = 9.80665 /
+&sphere radius = 0.02, material = 'rubber' /
+&plate material = 'stone', waves = 'none' /
+&contact law = 'receding' /
+&material name = 'stone', model = 'rigid', density = 2700.0 /
+&material name = 'rubber', model = 'power_law', density = 1100.0, poisson_ratio = 0.5,
+coefficient = 2e6, exponent = 0.1 /
+"""
+
+
+def test_one_datum(tmp_path, capsys):
+    """It needs its error, and tests nothing."""
+    (tmp_path / "ball.nml").write_text(BALL)
+    (tmp_path / "one.csv").write_text("v [m/s],resilience [%]\n3.0,55\n")
+    words = [str(tmp_path / name) for name in ("ball.nml", "one.csv")]
+    words += ["--free", "rubber.exponent", "--output", str(tmp_path / "out")]
+    with pytest.raises(SystemExit):
+        identification.main(words)
+    assert capsys.readouterr().err.endswith("or their errors: --error resilience=0.01\n")
+    identification.main([*words, "--error", "resilience=1%"])
+    said = capsys.readouterr().out
+    assert "as many data as parameters: nothing tests the model (0 degrees of freedom)" in said
+    assert "chi2" not in said and "AIC" not in said and "-0.00" not in said
+    assert not list((tmp_path / "out").glob("*.svg"))
+    case = vcor.read(tmp_path / "out" / "ball_identified.nml")
+    assert case.solve()["resilience"] == pytest.approx(0.55, abs=1e-6)
+
+
+def test_rebounds_without_a_loss(monkeypatch):
+    """The exponent is at its bound, and no impact takes the slow method."""
+    velocity = np.array([3.571, 3.571, 3.284, 2.971, 2.62, 2.214])
+    solved, solve = [], vcor.Case._solve
+
+    def counted(self, addresses, values, *more):
+        solved.append(len(values))
+        return solve(self, addresses, values, *more)
+
+    monkeypatch.setattr(vcor.Case, "_solve", counted)
+    case = vcor.Case(BALL)
+    found = vcor.identify(case, {"velocity": velocity, "cor": np.ones(6)}, ["rubber.exponent"])
+    (one,) = found.estimates
+    assert np.isnan(one.standard_error) and one.interval_95[0] == 0
+    assert "rubber.exponent is at its bound, 0 is as good" in str(found)
+    assert sum(solved) < 5000
+    assert found.case.solve(quantities=["steps"])["steps"] < 50
+
+
 def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
     (tmp_path / "rubber.nml").write_text(guess("sls").text())
     words = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv", "--free", "rubber.beta"]

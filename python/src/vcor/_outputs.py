@@ -15,7 +15,10 @@ from .plot import save
 def finish(
     options: argparse.Namespace, report: str, stem: str, contents: Mapping[str, Any], figure: Any
 ) -> None:
-    """Write texts, bytes or what goes into JSON, by the ends of names, and a figure, and report."""
+    """Write texts, bytes or what goes into JSON, by the ends of names, and a figure, and report.
+
+    The figure may be None.
+    """
     folder = options.output if options.output.endswith("/") else f"{options.output}/"
     paths = [place(folder, stem + end.rpartition(".")[0], [end.rpartition(".")[2]], None, [])
              for end in contents]  # fmt: skip
@@ -23,7 +26,8 @@ def finish(
         if not isinstance(content, (str, bytes)):
             content = json.dumps(content, indent=1) + "\n"
         write(path, content if isinstance(content, bytes) else content.encode())
-    paths.append(place(folder, stem, [options.format], None, []))
-    save(figure, paths[-1])
+    if figure is not None:
+        paths.append(place(folder, stem, [options.format], None, []))
+        save(figure, paths[-1])
     if not options.quiet:
         sys.stdout.write(f"{report}\nwritten {', '.join(map(str, paths))}\n")

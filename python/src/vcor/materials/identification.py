@@ -565,4 +565,5 @@ def _work(options: argparse.Namespace) -> None:
     texts = {".nml": best.case.text(), ".json": written}
     stem = f"{Path(options.case).stem}_identified"
 
-    finish(options, report, stem, texts, best.figure())
+    # one datum is no figure
+    finish(options, report, stem, texts, best.figure() if len(best.data) > 1 else None)

@@ -51,12 +51,15 @@ def report(found: Identification) -> str:
         if math.isnan(one.standard_error):
             wide = [f", {end:g} is as good" for end in one.interval_68 if end in (0, math.inf)]
             lines.append(f"{one.address} is at its bound{''.join(wide)}: no standard error")
-    if found.relative_error is None:
+    if not found.dof:
+        lines += ["", "as many data as parameters: nothing tests the model (0 degrees of freedom)"]
+    elif found.relative_error is None:
         lines += ["", f"chi2/dof {found.chi2 / max(found.dof, 1):.3g} ({found.dof} dof)"]
     else:
         lines += ["", f"error of each datum {percent(found.relative_error)}, from the misfit and "
                   f"the digits ({found.dof} degrees of freedom)"]  # fmt: skip
-    lines[-1] += f", AIC {found.aic:.1f}, BIC {found.bic:.1f}"
+    if found.dof:
+        lines[-1] += f", AIC {found.aic:.1f}, BIC {found.bic:.1f}"
     for source in found.alike:
         lines.append(f"the misfits of {source} are no noise, neighbours are alike: the model does "
                      "not describe these data, and the intervals are too narrow")  # fmt: skip
@@ -97,7 +100,7 @@ def report(found: Identification) -> str:
         if any(r is one for one in shown):
             begin = f"{r['quantity']:20s}" + f"{sources[r['source']]:16.15s}" * several
             begin += f"{r['at']:12.5g}" + f"{r['temperature']:9.2f}" * heated
-            lines.append(f"{begin}{r['value']:13.6g}{r['model']:13.6g}{r['residual']:16.2f}")
+            lines.append(f"{begin}{r['value']:13.6g}{r['model']:13.6g}{r['residual']:z16.2f}")
     if len(found.data) > len(shown):
         lines.append(f"(the {len(shown)} largest of {len(found.data)} residuals)")
     return "\n".join(lines) + "\n"

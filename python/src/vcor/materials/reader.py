@@ -37,7 +37,7 @@ _BESIDE = {
     "dynamic": {"temperature", "set", "loss_tangent", "complex_modulus", "phase_angle"},
     "relaxation": {"temperature", "set"},
     "shift": {"temperature"},
-    "record": {"velocity", "temperature", "radius", "mass", "set"},
+    "record": {"velocity", "temperature", "radius", "diameter", "mass", "set"},
 }
 _DYNAMIC = {"storage_modulus", "loss_modulus", "complex_modulus"}
 _IMPACTS = {
@@ -48,7 +48,7 @@ _IMPACTS = {
     "bounce_time",
     "event_time",
 }
-_SETTINGS = {"velocity", "drop_height", "temperature", "radius", "mass", "set"}
+_SETTINGS = {"velocity", "drop_height", "temperature", "radius", "diameter", "mass", "set"}
 
 
 class Reader:
@@ -238,6 +238,8 @@ class Reader:
             frame = self._dynamic(frame, table)
         elif kind == "impacts":
             frame = self._impacts(frame)
+        if "diameter" in frame:
+            frame = self._radius(frame, table)
         if self.whole and kind in ("dynamic", "relaxation", "shift"):
             self._positive(frame, kind)
         return frame
@@ -410,9 +412,9 @@ class Reader:
                 raise InputError(
                     f"{self.path}:{table.line}: found the column '{head.text}', expected one of "
                     f"velocity, rebound_velocity, drop_height, rebound_height, bounce_time, cor, "
-                    f"cor_sphere, resilience, contact_time, max_force, temperature, radius, mass, "
-                    f"another column of the summary or an address{near(bare, known)}; or "
-                    f"{option('columns', {'NAME': head.text})}"
+                    f"cor_sphere, resilience, contact_time, max_force, temperature, radius, "
+                    f"diameter, mass, another column of the summary or an address"
+                    f"{near(bare, known)}; or {option('columns', {'NAME': head.text})}"
                 )
 
     def _dynamic(self, frame: pd.DataFrame, table: Table) -> pd.DataFrame:
@@ -473,6 +475,20 @@ class Reader:
             last = np.flatnonzero(ended)
             frame = frame.iloc[: last[-1] + 1 if last.size else 0].copy()
         return frame
+
+    def _radius(self, frame: pd.DataFrame, table: Table) -> pd.DataFrame:
+        """The radius of the sphere in the place of its diameter."""
+        if "radius" in frame:
+            raise InputError(
+                f"{self.path}:{table.line}: found both a radius and a diameter, expected one"
+            )
+        halves = {key: key.replace("diameter", "radius") for key in frame if "diameter" in str(key)}
+        for key, name in halves.items():
+            frame[key] /= 2
+            if text := self.names.pop(str(key), ""):
+                self.names[name] = f"half of {text}"
+            self.units[name] = "m"
+        return frame.rename(columns=halves)
 
     def _positive(self, frame: pd.DataFrame, kind: str) -> None:
         """Refuse moduli, times and frequencies that are not positive."""

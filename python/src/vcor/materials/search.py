@@ -12,6 +12,7 @@ from scipy.optimize import least_squares
 
 from .._differences import slopes
 from .._library import Error, Floats, InputError, NumericalError, UsageError
+from .._text import option
 from ..case import Case, number
 from .noise import Noise
 from .observations import Block, Impacts, velocity_of
@@ -79,8 +80,13 @@ class Problem:
         if few:
             files = ", ".join(dict.fromkeys(block.source for block in self.blocks))
             found = min(len({*where}), len(several))
-            raise InputError(f"{files}: found {found} distinct data for {len(self.free)} "
-                             "parameters, expected more")  # fmt: skip
+            n = len(self.free)
+            line = f"{files}: found {found} distinct dat{'a' if found > 1 else 'um'} for {n} "
+            line += f"parameter{'s' * (n > 1)}, expected more"
+            if self.noise.estimated and self.dof >= 0 and len({*where}) >= n:
+                # nothing is left to estimate a scatter from
+                line += f", or their errors: {option('errors', {self.quantity[0]: 0.01})}"
+            raise InputError(line)
 
     def _errors_of_model(self, x: Floats) -> Floats:
         errors = [block.error_of_model(self.case, self.free, np.exp(x)) for block in self.blocks]
