@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How accurate vcor is on impacts of many kinds: measures, and writes the tables of docs/accuracy.md.
+"""How accurate vcor is on impacts of many kinds: measures, and writes the tables of docs/appendix_accuracy.md.
 
     accuracy_families.py [--only NAME,...] [--share 0.1] [--cases FILE]
 
 Each family of impacts is drawn from a seed of its own and solved with the methods and accuracies of RUNS.
 The error is the distance from the best solution, see `best_of`. The tables go between the markers of
-docs/accuracy.md, with --only to the screen; --share solves a share of each family. --cases writes the
+docs/appendix_accuracy.md, with --only to the screen; --share solves a share of each family. --cases writes the
 impacts that are refused, missed, or whose error is stated too small, as case files with remarks. Takes about
 six minutes on two idle cores. Needs the Python package (PYTHONPATH=python/src and
 VCOR_LIBRARY=build/release/libvcor_python.so will do), and what tests/reference/requirements.txt names.
@@ -28,7 +28,7 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 TOP = Path(__file__).resolve().parent.parent
 REFERENCE = TOP / "tests" / "reference"
-DOCUMENT = TOP / "docs" / "accuracy.md"
+DOCUMENT = TOP / "docs" / "appendix_accuracy.md"
 sys.path.insert(0, str(REFERENCE))
 
 import numpy as np  # noqa: E402
@@ -209,7 +209,7 @@ def with_exponents(near):
     return draw_case
 
 
-def fleeing(draw):
+def nearly_fluid(draw):
     """The paper's sphere on an SLS plate that relaxes to next to nothing."""
     beta = draw.log(3e3, 1e7)
     plate = dict(SLS, alpha=beta * draw.log(1e-18, 1e-2), beta=beta)
@@ -270,7 +270,7 @@ FAMILIES = [
     Family("frozen plates", 100, "practical, on frozen plates with a continuous spectrum",
            such(lambda c: c["plate"]["waves"] == "frozen"
                 and plate_of(c)["model"] in ("power_law", "cerf", "mittag_leffler"))),
-    Family("fleeing plates", 150, "the paper's sphere on SLS plates that keep 1e-2 to 1e-18 of their modulus", fleeing),
+    Family("nearly fluid plates", 150, "the paper's sphere on SLS plates that keep 1e-2 to 1e-18 of their modulus", nearly_fluid),
     Family("exponents near 0", 60, "practical, exponents of 0.001 to 0.05", with_exponents(0.0)),
     Family("exponents near 1", 60, "practical, exponents of 0.95 to 0.999", with_exponents(1.0)),
     Family("shapes, gravity", 150, "practical: cones, punches, profiles, and spheres with gravity of 1 to 100 m/s²",

@@ -39,7 +39,8 @@ PARTS = {
     "Recipes": ["recipes", "rebound", "identification", "exchange", "cards", "measurements"],
     "Reference": ["commands", "input", "output", "library", "python_api", "reference_impacts",
                   "glossary"],
-    "Theory": ["theory", "reproducing_the_paper", "numerics", "appendix_statistics"],
+    "Theory": ["theory", "reproducing_the_paper", "numerics", "appendix_accuracy",
+               "appendix_statistics"],
     "Development": ["architecture", "performance", "scaling", "changes"],
 }
 

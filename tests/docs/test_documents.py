@@ -77,10 +77,11 @@ def test_the_index_names_every_page():
 
 
 def test_modules_and_files_that_pages_name():
-    """Modules and files that a page names exist."""
+    """Modules, functions of C and files that a page names exist."""
     modules = set()
     for path in [*(ROOT / "src").rglob("*.[fF]90"), *(ROOT / "app").glob("*.f90")]:
         modules |= set(re.findall(r"^module (\w+)", path.read_text(), re.MULTILINE))
+    modules |= set(re.findall(r"\b(vcor_\w+)\(", (ROOT / "include/vcor.h").read_text()))
     for page in PAGES:
         text = page.read_text(encoding="utf-8")
         named = set(re.findall(r"`(vcor_\w+)`|\[\[(vcor\w*)\(module\)", text))
