@@ -1,4 +1,4 @@
-"""Write docs/receding.svg: force over indentation for both contact laws, the paper's SLS case.
+"""Write docs/receding.svg: force against indentation for both contact laws, the paper's SLS case.
 
     pip install './python[plot]' && python docs/make_receding.py
 """

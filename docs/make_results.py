@@ -1,4 +1,4 @@
-"""Write docs/results.svg, the picture of the README: restitution over velocity, temperature and thickness.
+"""Write docs/results.svg, the picture of the README: restitution against velocity, temperature and thickness.
 
     pip install './python[plot]' && python docs/make_results.py
 """
