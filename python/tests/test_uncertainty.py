@@ -472,6 +472,20 @@ def test_bands_are_those_of_each_impact(swept):
     assert table.validity.item() == wanted.validity == swept.run().validity.values[1]
 
 
+def test_bands_are_of_all_quantities_that_the_impacts_have(swept):
+    found = vcor.bands(swept, {"rubber.beta": "5%"}, samples=64)
+    assert found.quantities[0] == "cor"
+    there = {"cor_sphere", "contact_time", "max_force", "resilience", "mean_pressure",
+             "contact_radius", "energy_loss", "peak_loss_tangent"}  # fmt: skip
+    assert there <= set(found.quantities)
+    # a half space without a drop
+    assert not {"rebound_height", "layer_ratio", "cor_error", "contact_ratio"} & set(
+        found.quantities
+    )
+    low, high = found.table["resilience_p2.5"], found.table["resilience_p97.5"]
+    assert (low < found.table.resilience).all() and (found.table.resilience < high).all()
+
+
 def test_small_bands_follow_the_scaling_of_a_half_space(swept):
     """cor depends on velocity and modulus by E^2 v alone: bands of one are those of the other."""
     some = [

@@ -82,7 +82,9 @@ def bands(
         As for `propagate`. The swept parameter may vary about its values: "5%" or "0.1".
     samples
         Impacts that are solved at each value, about.
-    quantities, seed, threads
+    quantities
+        Columns of the summary; by default all quantities that the impacts have.
+    seed, threads
         As for `propagate`.
 
     Returns
@@ -91,6 +93,8 @@ def bands(
         Quantities and their percentiles over the swept parameter.
     """
     case, axes = as_case(case), as_case(case)._axes()
+    if quantities is USUAL:
+        quantities = _every(case)
     if len(axes) != 1:
         raise UsageError(f"{case.name}: found {len(axes)} swept parameters, expected one")
     ((address, values),) = axes.items()
@@ -142,6 +146,25 @@ def bands(
         attrs=case._attrs({}),
     )
     return Bands(table, good.quantities, points)
+
+
+def _every(case: Case) -> list[str]:
+    """Quantities that all impacts of a sweep have, but errors and pure numbers that only judge."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NoResultWarning)
+        found = case.run(progress=False)
+    columns = _library.columns(0)
+    judges = columns["validity_cause"].labels.split()
+    there = np.isfinite(found["cor"].values)
+    if not there.any():
+        return list(USUAL)
+    return [
+        name
+        for name, one in columns.items()
+        if not (one.labels or one.is_whole or name.endswith("_error") or name == "energy_imbalance")
+        and not (name in judges and one.unit == "1")
+        and np.isfinite(found[name].values[there]).all()
+    ]
 
 
 def _columns(name: str, along: xr.Dataset) -> dict[str, tuple[NDArray[Any], dict[str, str]]]:
