@@ -49,7 +49,7 @@ have_mpi() {
 have_venv() { have python3 && python3 -c 'import ensurepip, venv' >/dev/null 2>&1; }
 
 have_debian_packages() {
-   /usr/bin/python3 -c 'import h5netcdf, h5py, matplotlib, numpy, openpyxl, pytest, scipy, tqdm, xarray' >/dev/null 2>&1
+   /usr/bin/python3 -c 'import h5netcdf, h5py, matplotlib, numpy, openpyxl, pytest, scipy, threadpoolctl, tqdm, xarray' >/dev/null 2>&1
 }
 
 # need WHAT PACKAGES COMMAND [ARGUMENT ...]: if the command fails, the packages are missing
@@ -81,7 +81,7 @@ look() {
       need "python3 with venv" "python3 python3-venv" have_venv
       # the Python package is tested with Debian's
       need "xarray and others of Debian" "python3-xarray python3-h5netcdf python3-tqdm \
-         python3-matplotlib python3-scipy python3-openpyxl python3-pytest" have_debian_packages
+         python3-matplotlib python3-scipy python3-openpyxl python3-threadpoolctl python3-pytest" have_debian_packages
       # words are completed in them
       need "zsh" "zsh" have zsh
       need "fish" "fish" have fish

@@ -60,7 +60,7 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
                 raise InputError(f"{path}: there is no group '{group}' of vcor in this file")
             columns = {name: _column(one) for name, one in found.items()
                        if isinstance(one, h5py.Dataset)}  # fmt: skip
-            axes = {name: columns.pop(name) for name in list(columns) if found[name].is_scale}
+            axes = {name: columns.pop(name) for name in list(columns) if _is_scale(found[name])}
             result = xr.Dataset(columns, axes, dict(found.attrs))
     except Error:
         raise
@@ -80,7 +80,7 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
 def _column(one: h5py.Dataset) -> xr.Variable:
     """A column along its dimension scales, or alone along dimensions of its own shape."""
     attrs = {name: text for name, text in one.attrs.items() if name not in _OF_SCALES}
-    if one.is_scale:
+    if _is_scale(one):
         dims = [_name(one)]
     else:
         dims = [_name(scales[0]) if len(scales) else f"{size} values"
@@ -88,6 +88,11 @@ def _column(one: h5py.Dataset) -> xr.Variable:
     if h5py.check_string_dtype(one.dtype):
         return xr.Variable(dims, np.asarray(one.asstr()[()], dtype=str), attrs)
     return xr.Variable(dims, one[()], attrs)
+
+
+def _is_scale(one: h5py.Dataset) -> bool:
+    # h5py of Debian 12 has no property for it
+    return bool(h5py.h5ds.is_scale(one.id))
 
 
 def _name(one: h5py.Dataset) -> str:
