@@ -23,6 +23,8 @@ STEP = 0.02
 STRIDE = 1e-3
 #: Points that a fit may start from, and how many of them do
 STARTS, REFINED = 64, 4
+#: Parts in which the starts are tried
+PARTS = 32
 #: Logarithm of the factor from the first guess beyond which parameters are not followed
 FARTHEST = math.log(1e12)
 #: Part of the largest slope below which a parameter has vanished
@@ -177,12 +179,15 @@ class Problem:
         """The smallest sum of squares from several starts, the first one the case itself."""
         x = self.guess
         spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
-        # of impacts that fail slowly one is enough
+        # of impacts that fail slowly one is enough; all in parts, for the bar and Ctrl-C
         for impacts in self.impacts:
-            spread = spread[impacts.possible(self.case, self.free, np.exp(x + spread))]
+            good = []
+            for part in np.array_split(spread, PARTS):
+                good.append(impacts.possible(self.case, self.free, np.exp(x + part)))
+                self.bar.update(len(part))
+            spread = spread[np.concatenate(good)]
         starts = np.vstack([x, x + spread])
-        # in parts, for the bar and Ctrl-C
-        found_there = np.vstack([self.predict(part) for part in np.array_split(starts, 8)])
+        found_there = np.vstack([self.predict(part) for part in np.array_split(starts, PARTS)])
         sums = np.sum(((found_there - self.value) / self.sigma) ** 2, axis=1)
         order = np.argsort(np.where(np.isnan(sums), np.inf, sums), kind="stable")[:REFINED]
         if not np.isfinite(sums[order[0]]):
