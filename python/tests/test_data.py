@@ -99,6 +99,8 @@ HEADS = {
     "Chinese": ("频率（Hz）,储能模量（MPa）,损耗模量（MPa）\n", (HERTZ, STORAGE / 1e6, LOSS / 1e6)),
     "typographic": ("f [Hz],E′ [Pa],E″ [Pa]\n", (HERTZ, STORAGE, LOSS)),
     "quotation mark": ("f [Hz],E' [Pa],E\" [Pa]\n", (HERTZ, STORAGE, LOSS)),
+    "exclamation marks": ("! made by a script\n! f [Hz], E' [Pa], E'' [Pa]\n",
+                          (HERTZ, STORAGE, LOSS)),
     "preamble": ("Sample,rubber 12\nDiameter,8.0\nTemperature limit,620 [°C]\n\n"
                  "f [Hz],E' [Pa],E'' [Pa]\n", (HERTZ, STORAGE, LOSS)),
 }  # fmt: skip
@@ -394,6 +396,13 @@ BAD = {
     "compliance": ("f [Hz],J' [1/Pa],J'' [1/Pa]\n1,5,1\n2,4,1\n", ["J'"]),
     "viscosity": ("f [Hz],Complex viscosity [Pa s]\n1,5\n2,4\n", ["'Complex viscosity"]),
     "no loss": ("f [Hz],Stress [Pa],E' [Pa]\n1,5,5\n2,6,6\n", ["loss modulus", "E''"]),
+    **{
+        f"thousands {i}": (f"t [s];E [Pa]\n1;{one}\n2;{two}\n", [":2:", f"'{one}' with thousands"])
+        for i, (one, two) in enumerate([
+            ("2,000,000", "1,900,000"), ("2.000.000,0", "1.900.000,0"), ("1,234.5", "999.5"),
+            ("1.234,5", "999,5"), ("2'000'000", "999.5"), ("2’000,5", "999,5"),
+        ])
+    },
     "no names": ("1,5,1\n2,6,1\n", ["3 columns without names", "columns with their names"]),
     "names of places": ("a,b,c\n1,5,1\n2,6,1\n", ["'b'"]),
     "bare log": ("log t,log E\n1,5\n2,4\n", ["expected log10 or ln"]),
@@ -529,6 +538,11 @@ def test_spreadsheets(tmp_path):
         pd.DataFrame({"Device": ["DMA"], "Serial": [12]}).to_excel(book, sheet_name="Info")
         for t in (20, 30):
             frame.assign(**{"Temperature [°C]": t}).to_excel(book, sheet_name=f"{t} C", index=False)
+    assert [round(one.attrs["temperature"] - 273.15) for one in curves(read_data(path))] == [20, 30]
+    # the names of the sheets alone
+    with pd.ExcelWriter(path) as book:
+        for t in (20, 30):
+            frame.to_excel(book, sheet_name=f"{t} °C", index=False)
     assert [round(one.attrs["temperature"] - 273.15) for one in curves(read_data(path))] == [20, 30]
 
 

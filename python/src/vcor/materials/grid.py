@@ -22,8 +22,14 @@ _MOST_UNPACKED = 4 * MOST_BYTES
 #: Encodings of instruments that do not write Unicode; the one whose names are known is taken
 _ENCODINGS = ("cp1252", "shift_jis", "gb18030", "iso8859_7", "latin-1")
 _NUMBER = re.compile(r"[-+−]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+−]?\d+)?")
+#: Numbers whose thousands are apart, which no other reading allows: 1,234.5 and 1.234,5, 1,234,567
+#: and 1.234.567, or 1'234 and with a blank that is no separator
+_THOUSANDS = re.compile(
+    r"[-+−]?\d{1,3}((,\d{3})+\.\d*|(\.\d{3})+,\d*|(,\d{3}){2,}|(\.\d{3}){2,}"
+    "|(['’\u00a0\u2009\u202f]\\d{3})+([.,]\\d*)?)"
+)
 _MISSING = {"", "nan", "na", "n/a", "#n/a", "#na", "-", "--", "---", "null", "none", "*", "**"}
-_REMARKS = ("#", "%", "//")
+_REMARKS = ("#", "%", "//", "!")
 #: Lines from which the separator is seen
 _SEEN = 3000
 
@@ -61,7 +67,15 @@ class Grid:
 
 def is_number(cell: str) -> bool:
     """Whether a cell is a number, with a decimal point or a decimal comma."""
-    return bool(cell) and _NUMBER.fullmatch(cell) is not None
+    return bool(cell) and (_NUMBER.fullmatch(cell) is not None or has_thousands(cell))
+
+
+def has_thousands(cell: str) -> bool:
+    """Whether a cell is a number whose thousands are apart.
+
+    Others of its column, as 1.234, would not tell what they are: no such number is taken.
+    """
+    return _THOUSANDS.fullmatch(cell) is not None
 
 
 def is_missing(cell: str) -> bool:
@@ -70,9 +84,9 @@ def is_missing(cell: str) -> bool:
 
 
 def number(cell: str) -> float:
-    """A cell as a number; nan if it holds none."""
+    """A cell as a number; nan if it holds none that is taken."""
     text = cell.replace(",", ".").replace("−", "-").replace("d", "e").replace("D", "e")
-    return float(text) if is_number(cell) else math.nan
+    return float(text) if _NUMBER.fullmatch(cell) else math.nan
 
 
 def resolution(cell: str) -> float:
@@ -174,8 +188,10 @@ def _spreadsheet(name: str, raw: bytes) -> Grid:
         ) from None
     rows: list[Row] = []
     starts, line = [], 0
-    for sheet in sheets.values():
+    for title, sheet in sheets.items():
         starts.append(line + 1)
+        # it may say the temperature
+        rows.append(Row(line + 1, str(title), [str(title)]))
         for values in sheet.itertuples(index=False, name=None):
             line += 1
             cells = ["" if v is None or v != v else _cell(v) for v in values]
@@ -207,7 +223,7 @@ def _split(name: str, lines: list[str]) -> Grid:
     for i, line in enumerate(lines, 1):
         text = line.strip().lstrip("\ufeff")
         if text.startswith(_REMARKS):
-            bare = line.strip("\r\n").lstrip(" \ufeff#%/").rstrip(" ")
+            bare = line.strip("\r\n").lstrip(" \ufeff#%/!").rstrip(" ")
             remarks.append(bare.strip())
             if bare.strip():
                 rows.append(Row(i, bare, [], remark=True))

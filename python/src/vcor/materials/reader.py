@@ -11,7 +11,7 @@ import numpy as np
 
 from .._library import Floats, InputError, UsageError, printable
 from .._text import near, option
-from .grid import Grid, Row, is_missing, is_number, number
+from .grid import Grid, Row, has_thousands, is_missing, is_number, number
 from .names import ASIDE, QUANTITIES, Head, is_address, plain
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
 from .units import examples, plain_unit, quantities_of, size
@@ -255,6 +255,11 @@ class Reader:
         commas = points = ambiguous = 0
         for i, row in enumerate(rows):
             cell, place = column.cell(row), f"{self.path}:{row.line}"
+            if has_thousands(cell):
+                raise InputError(
+                    f"{place}: found '{cell}' with thousands apart in column "
+                    f"'{column.head.text}', expected numbers without marks between digits"
+                )
             if is_number(cell):
                 found[i] = number(cell)
                 if "," in cell:
