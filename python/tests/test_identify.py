@@ -616,6 +616,18 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
     assert said.count("\n") == 1
 
 
+@pytest.mark.parametrize(("head", "said"), [
+    ("rebound [%]", "columns={'resilience': 'rebound [%]'}"), ("rebound", "'resilience': 'rebound'"),
+    ("bounce [mm]", "'drop_height': 'bounce [mm]'"), ("impulse [ms]", "'contact_time': 'impulse [ms]'"),
+    ("contact tyme", "did you mean 'contact_time'?"),
+])  # fmt: skip
+def test_a_column_that_is_not_known_is_guessed_by_its_unit(tmp_path, head, said):
+    (tmp_path / "a.csv").write_text(f"{head},velocity [m/s]\n45,1\n50,2\n")
+    with pytest.raises(vcor.InputError) as error:
+        vcor.identify(guess("sls"), tmp_path / "a.csv", ["rubber.beta"])
+    assert said in str(error.value)
+
+
 @pytest.mark.parametrize(
     ("data", "free", "said"),
     [
@@ -629,6 +641,7 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
         ({"velocity": [1.0, -2.0], "cor": [0.5, 0.4]}, ["rubber.beta"], "row 2: found a velocity"),
         ({"velocity": ["a"], "cor": [0.5]}, ["rubber.beta"], "velocity: expected numbers"),
         ({"bounce_time": [0.3, 0.2, 0.25]}, ["rubber.beta"], "row 2: found a cor_sphere of 1.25"),
+        ({"velocity": [1.0], "resilience": [45.0]}, ["rubber.beta"], "such as resilience [%]"),
         ("none.csv", ["rubber.beta"], "none.csv"),
     ],
 )

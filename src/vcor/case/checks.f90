@@ -14,7 +14,7 @@ module vcor_case_checks
    use vcor_case_values, only : range_message
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
-   use vcor_material_shift, only : key_laws, keys_needed, shift_keys
+   use vcor_material_shift, only : coldest, key_laws, keys_needed, shift_keys
    use vcor_number, only : real_text
    use vcor_text, only : canonical_name, printable, quoted, shortened
    use vcor_words, only : contains_word, join_words, suggestion
@@ -51,7 +51,7 @@ module vcor_case_checks
    !> Moduli from those of gels to that of diamond; densities from those of foams to that of osmium;
    !> times from the period of atomic vibrations
    type(limits_t), parameter :: limits(*) = [ &
-      limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
+      limits_t('impact', 'temperature', 'K', coldest, endless, celsius, ''), &
       limits_t('impact', 'velocity', 'm/s', -endless, 300.0_wp, '', 'is it in mm/s?'), &
       limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
@@ -61,8 +61,8 @@ module vcor_case_checks
       limits_t('plate', 'thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'surface_radius', 'm', -endless, 10.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'extent', 'm', -endless, 20.0_wp, '', 'is it in mm?'), &
-      limits_t('material', 'reference_temperature', 'K', 100.0_wp, endless, celsius, ''), &
-      limits_t('material', 'valid_temperature_from', 'K', 100.0_wp, endless, celsius, ''), &
+      limits_t('material', 'reference_temperature', 'K', coldest, endless, celsius, ''), &
+      limits_t('material', 'valid_temperature_from', 'K', coldest, endless, celsius, ''), &
       limits_t('material', '', 'Pa', 1.0e3_wp, 2.0e12_wp, 'is it in kPa, MPa or GPa?', &
       'has it a power of ten too many?'), &
       limits_t('material', '', 'kg/m3', 10.0_wp, 3.0e4_wp, 'is it in g/cm3?', 'is it in g/m3?'), &

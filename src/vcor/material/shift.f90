@@ -18,7 +18,8 @@ module vcor_material_shift
    implicit none
    private
 
-   public :: shift_t, shift_laws, shift_parameters, shift_keys, keys_needed, key_laws
+   public :: shift_t, shift_laws, shift_parameters, shift_keys, keys_needed, key_laws, &
+      coldest
 
    !> Names of the laws, separated by blanks
    character(len=*), parameter :: shift_laws = 'wlf arrhenius table'
@@ -37,6 +38,8 @@ module vcor_material_shift
       'shift_file', 'vertical_shift', 'valid_temperature_from', 'valid_temperature_to']
    !> The first so many keys are required by the laws to which they belong
    integer, parameter :: keys_needed = size(shift_parameters) + 1
+   !> Temperature below which a number is probably one in degrees Celsius [K]
+   real(wp), parameter :: coldest = 100.0_wp
    !> Laws to which each key belongs
    character(len=*), parameter :: key_laws(*) = [character(len=len(shift_laws)) :: shift_laws, &
       'wlf', 'wlf', 'arrhenius', 'table', shift_laws, shift_laws, shift_laws]
@@ -77,11 +80,15 @@ contains
       real(wp), parameter :: farthest = 60.0_wp
       ! long enough for any two finite numbers
       character(len=640) :: reach
+      character(len=48) :: hint
       real(wp) :: decades, distance
 
       a = 1.0_wp
       b = 1.0_wp
       if (self%law == '' .or. .not. temperature > 0.0_wp) return
+      hint = ''
+      if (temperature < coldest) write (hint, '(a, f0.2, a, f0.2, a)') '; ', temperature, &
+         ' C is ', temperature + 273.15_wp, ' K'
       associate (reference => constants(1), c1 => constants(2), c2 => constants(3), &
                  activation_energy => constants(4))
          distance = temperature - reference
@@ -89,7 +96,8 @@ contains
          case ('wlf')
             if (.not. c2 + distance > 0.0_wp) then
                call raise(error, error_input, 'expected a temperature above ' &
-                  //'reference_temperature - wlf_c2 [K], below which the WLF law does not hold', &
+                  //'reference_temperature - wlf_c2 [K], below which the WLF law does not ' &
+                  //'hold'//trim(hint), &
                   about='temperature reference_temperature wlf_c2')
                return
             end if
@@ -103,7 +111,7 @@ contains
                if (min(temperature, reference) < first .or. max(temperature, reference) > last) then
                   write (reach, '(f0.2, a, f0.2)') first, ' K to ', last
                   call raise(error, error_input, 'expected temperatures in the table of shift ' &
-                     //'factors, '//trim(reach)//' K, which is not extrapolated', &
+                     //'factors, '//trim(reach)//' K, which is not extrapolated'//trim(hint), &
                      about='temperature reference_temperature shift_file')
                   return
                end if
@@ -112,7 +120,7 @@ contains
          end select
          if (.not. abs(decades) <= farthest) then
             call raise(error, error_input, 'expected a shift factor a_T between 1e-60 and 1e60, ' &
-               //'beyond which nothing can be computed; temperatures are in K', &
+               //'beyond which nothing can be computed'//trim(hint), &
                about='temperature reference_temperature')
             return
          end if

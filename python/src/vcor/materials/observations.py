@@ -79,6 +79,8 @@ class Impacts:
             most = 1.0 if name in COEFFICIENTS else math.inf
             if (bad := np.flatnonzero((column <= 0) | (column > most))).size:
                 limit = " and <= 1" if most == 1 else ""
+                if 2 < column[bad[0]] <= 100 and limit:
+                    limit += f", or the unit in the head, such as {name} [%]"
                 raise InputError(f"{source}: row {bad[0] + 1}: found a {name} of "
                                  f"{column[bad[0]]:.6g}, expected one > 0{limit}")  # fmt: skip
             if name in SETTINGS:

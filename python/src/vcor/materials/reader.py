@@ -48,6 +48,9 @@ _IMPACTS = {
     "bounce_time",
     "event_time",
 }
+#: What a column of impacts of a name or a unit probably is
+_MEANT = {"rebound": "resilience", "1": "resilience", "m/s": "velocity", "m": "drop_height",
+          "s": "contact_time", "N": "max_force", "K": "temperature"}  # fmt: skip
 _SETTINGS = {"velocity", "drop_height", "temperature", "radius", "diameter", "mass", "set"}
 
 
@@ -414,12 +417,15 @@ class Reader:
                 continue
             if head.flaw or head.name not in {*impact, *_IMPACTS, *_SETTINGS, "time", "run_time"}:
                 bare = plain(head.text.split("[")[0].split("(")[0]).replace(" ", "_")
+                units = quantities_of(head.unit) if head.unit else []
+                meant = next((_MEANT[one] for one in [*units, bare] if one in _MEANT), "")
                 raise InputError(
                     f"{self.path}:{table.line}: found the column '{head.text}', expected one of "
                     f"velocity, rebound_velocity, drop_height, rebound_height, bounce_time, cor, "
                     f"cor_sphere, resilience, contact_time, max_force, temperature, radius, "
                     f"diameter, mass, another column of the summary or an address"
-                    f"{near(bare, known)}; or {option('columns', {'NAME': head.text})}"
+                    f"{'' if meant else near(bare, known)}; or "
+                    f"{option('columns', {meant or 'NAME': head.text})}{', say' * bool(meant)}"
                 )
 
     def _dynamic(self, frame: pd.DataFrame, table: Table) -> pd.DataFrame:
