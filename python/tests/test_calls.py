@@ -115,13 +115,13 @@ def drawn(files=None, axes=1, **options):
         (lambda: plot.save(drawn(), "sls"), "sls: expected a name that ends with .svg, .pdf, .png"),
     ],
 )  # fmt: skip
-def test_what_a_call_does_not_take(call, words):
+def test_wrong_arguments_are_refused(call, words):
     with pytest.raises((vcor.InputError, vcor.FileError), match=words):
         call()
 
 
 def test_numbers_and_tables_of_numpy_and_pandas():
-    """They are numbers and mappings like any."""
+    """They are accepted as numbers and mappings."""
     wanted = spread({"rubber.beta": 0.05}).as_dict()
     for vary in ({"rubber.beta": np.float64(0.05)}, pd.Series({"rubber.beta": 0.05})):
         assert spread(vary).as_dict() == wanted
@@ -141,7 +141,7 @@ def test_one_sweep_or_one_quantity_needs_no_list():
     (OSError(12, "Cannot allocate memory"), "Cannot allocate memory"),
     (MemoryError(), "the memory is too small for this"),
 ])  # fmt: skip
-def test_an_error_names_its_own_cause(error, line, monkeypatch, capfd):
+def test_an_error_names_its_cause(error, line, monkeypatch, capfd):
     """Not the standard output, unless that cannot be written (test_exchange.py)."""
     from vcor import _command
     from vcor.exchange import cards

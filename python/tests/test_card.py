@@ -72,7 +72,7 @@ def with_material(case, made):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_material_comes_back(model, tmp_path):
+def test_a_material_is_read_back(model, tmp_path):
     case = case_of(MODELS[model])
     made = vcor.card(case, "rubber", terms=17)
     codes = ALL if len(made.moduli) == 1 else SERIES
@@ -87,7 +87,7 @@ def test_a_material_comes_back(model, tmp_path):
 
 
 @pytest.mark.parametrize("code", SERIES)
-def test_any_series_comes_back(code, tmp_path):
+def test_any_series_is_read_back(code, tmp_path):
     rng = np.random.default_rng(23)
     for _ in range(20):
         n = int(rng.integers(1, 18))
@@ -161,7 +161,7 @@ def columns(line, *widths):
     return [float(line[e - w : e] or 0) for e, w in zip(ends, widths, strict=True)]
 
 
-def test_openradioss_has_the_long_time_law_and_the_terms_upon_it():
+def test_openradioss_has_the_long_time_law_and_the_terms_added_to_it():
     # GS = sum mu alpha, G = GS/2, K = GS (1 + nu)/(3 (1 - 2 nu)) of hm_read_mat42.F of OpenRadioss;
     # visc_prony.F adds 2 G_i and K_i with rates
     made = vcor.card(case_of(PRONY), "rubber")
@@ -230,7 +230,7 @@ def test_moduli_of_abaqus_are_long_term_by_default(tmp_path):
 
 
 @pytest.mark.parametrize("long_term", [True, False])
-def test_a_bulk_modulus_that_does_not_relax_is_said(long_term, tmp_path):
+def test_a_bulk_modulus_that_does_not_relax_is_reported(long_term, tmp_path):
     e, nu = (1e6, 0.49) if long_term else (1e7, 0.4)
     head = f"*Elastic, moduli={'LONG TERM' if long_term else 'INSTANTANEOUS'}\n{e}, {nu}"
     found = abaqus_of(tmp_path, head, k=False)
@@ -297,7 +297,7 @@ def test_the_card_serves_the_temperature_of_the_impact(temperature):
     assert found == pytest.approx(cor, abs=2e-3)
 
 
-def test_the_other_body_need_not_bear_the_reference_temperature():
+def test_the_other_body_may_exclude_the_reference_temperature():
     text = HEAD.replace("5.0 /", "5.0, temperature = 300.0 /").replace("model = 'rigid'",
         "model = 'cerf', poisson_ratio = 0.3, relaxing_modulus = 1e9, beta = 5, shift = 'wlf',"
         "wlf_c1 = 9, wlf_c2 = 51.6, reference_temperature = 300")  # fmt: skip
@@ -324,7 +324,7 @@ TBDATA, 1, 273-5, 199.73, 933.5     ! SHIFT FUNCTION PARAMETERS
 """
 
 
-def test_cards_that_others_wrote_for_ansys(tmp_path):
+def test_foreign_cards_of_ansys(tmp_path):
     found = back(tmp_path, ANSYS)
     assert found.times == (1e-10, 1e-9, 1e10) and found.density is None
     assert found.moduli[0] == pytest.approx(4.117658e-02 * 9115.8e6)
@@ -359,7 +359,7 @@ $ remark
 """
 
 
-def test_cards_that_others_wrote_for_lsdyna(tmp_path):
+def test_foreign_cards_of_lsdyna(tmp_path):
     found = back(tmp_path, DYNA.format(second=""), units="mm-t-s")
     assert found.density == pytest.approx(1100.0) and found.times == (0.1,)
     nu = (3 * 400 - 2 * 3) / (2 * (3 * 400 + 3))
@@ -379,7 +379,7 @@ def test_cards_that_others_wrote_for_lsdyna(tmp_path):
         back(tmp_path, narrow)
 
 
-def test_what_a_card_cannot_hold_is_said():
+def test_a_card_states_what_it_cannot_hold():
     def refused(words, code, keys, nu=0.45, kind=vcor.InputError, **options):
         with pytest.raises(kind, match=words) as caught:
             vcor.card(case_of(keys, nu), "rubber", **options).text(code)
@@ -693,7 +693,7 @@ def test_degrees_celsius(tmp_path, code, capsys):
 
 @pytest.mark.parametrize("code", ["abaqus", "ansys", "lsdyna", "comsol"])
 def test_cards_in_degrees_celsius(tmp_path, code):
-    """They state it, and are read back."""
+    """They state the unit, and are read back."""
     shift = {"shift": "wlf", "reference_temperature": 298.15, "wlf_c1": 8.0, "wlf_c2": 90.0}
     made = Card("gum", 0.4, 1e6, (2e6,), (1e-3,), 1100.0, shift)
     text = made.text(code, celsius=True)

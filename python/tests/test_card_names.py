@@ -67,7 +67,7 @@ def group_of(made):
 @pytest.mark.parametrize("code", FORMATS)
 @settings(max_examples=60)
 @given(data=st.data(), units=st.sampled_from(list(UNITS)), tell=st.booleans())
-def test_what_was_written_is_read(tmp_path, code, data, units, tell):
+def test_a_written_card_is_read_back(tmp_path, code, data, units, tell):
     made = data.draw(materials(code))
     try:
         text = made.text(code, units)
@@ -86,7 +86,7 @@ def test_what_was_written_is_read(tmp_path, code, data, units, tell):
 
 @pytest.mark.parametrize("code", FORMATS)
 @pytest.mark.parametrize("name", TRAPS)
-def test_a_name_is_a_name(tmp_path, code, name):
+def test_a_name_is_only_a_name(tmp_path, code, name):
     """Each trap: either refused by its name, or nothing but the name in the card."""
     plain = Card("rubber", 0.4, 1e6, (2e6,), (1e-3,), 1100.0)
     try:

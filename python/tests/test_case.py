@@ -139,7 +139,7 @@ def test_numbers_that_are_set_in_a_loop(sls, program):
     assert sls.points({"rubber.beta": [2400.0]}).cor[0] == float(cor)
 
 
-def test_what_is_set_by_another_name_of_an_address(sls):
+def test_two_names_of_one_address(sls):
     """The last one counts in solve as it does in run."""
     sls["impact.velocity"] = 1.0
     for name, value in [("IMPACT.VELOCITY", 2), ("Impact.velocity", 3.0), ("impact.velocity", 4)]:
@@ -162,7 +162,7 @@ def test_a_height_in_place_of_a_velocity(sls):
     assert sls.points({"impact.drop_height": [0.1, 0.5]}).cor[1] == cor
 
 
-def test_a_value_that_is_set_and_not_read(sls, program):
+def test_a_value_that_is_not_read_is_refused(sls, program):
     sls["solver.form"] = "b"
     with pytest.raises(vcor.InputError) as caught:
         sls.solve()
@@ -363,13 +363,13 @@ def test_errors_of_files(tmp_path, program):
         (lambda case: vcor.Case({"impact": {3: 1.0}}), "found 3, expected the name"),
     ],
 )  # fmt: skip
-def test_what_a_call_does_not_take(sls, call, words):
+def test_wrong_arguments_are_refused(sls, call, words):
     with pytest.raises(vcor.InputError, match=words):
         call(sls)
 
 
 @pytest.mark.parametrize("address", [3, None, ("impact", "velocity"), "impact.velocity\0x"])
-def test_what_is_no_address(sls, address):
+def test_wrong_addresses(sls, address):
     with pytest.raises(vcor.InputError, match="expected a text"):
         sls[address] = 1
     with pytest.raises(vcor.InputError, match="expected a text"):
@@ -384,7 +384,7 @@ def test_what_is_no_address(sls, address):
         np.array([1.0, None]),
     ],
 )  # fmt: skip
-def test_what_is_no_number(sls, value):
+def test_wrong_numbers(sls, value):
     for solve in (sls.points, sls.sweep, sls.solve):
         with pytest.raises(vcor.InputError, match=r"^impact\.velocity: expected"):
             solve({"impact.velocity": value})
@@ -393,7 +393,7 @@ def test_what_is_no_number(sls, value):
 
 
 def test_numbers_of_other_kinds(sls):
-    """Whatever is a real number is one; what is masked has no value."""
+    """Real numbers of any type are accepted; masked ones have no value."""
     expected = sls.points({"impact.velocity": [1.0, 2.0]}, ["cor"]).cor.values
     for one in (range(1, 3), np.array([1, 2], "u1"), np.array([Fraction(1), Decimal(2)]),
                 xr.DataArray([1.0, 2.0]), np.ma.array([1.0, 2.0], mask=False)):  # fmt: skip
@@ -534,7 +534,7 @@ def test_a_case_may_outlive_the_modules():
 
 
 def test_nothing_is_printed(tmp_path):
-    """Not by errors either."""
+    """Errors print nothing either."""
     script = (
         "import vcor, warnings; warnings.simplefilter('ignore')\n"
         f"case = vcor.read({str(PAPER / 'sls.nml')!r})\n"
@@ -563,7 +563,7 @@ def rubber(shift=True):
 
 
 def test_a_sweep_over_the_temperature():
-    """Alone and beside the speed; at the reference temperature nothing changes by a bit."""
+    """Alone and with the velocity; at the reference temperature not a bit changes."""
     temperatures = [283.15, 298.15, 313.15]
     case = vcor.Case(rubber())
     cube = case.sweep({"impact.temperature": temperatures, "impact.velocity": [2.0, 10.0]})
@@ -581,7 +581,7 @@ def test_a_sweep_over_the_temperature():
 
 
 def test_moduli_at_a_temperature():
-    """Times a_T as long."""
+    """Times are longer by the factor a_T."""
     case = vcor.Case(rubber())
     plain = case.material("rubber").relaxation([1e-4])
     case["impact.temperature"] = 310.0
@@ -632,7 +632,7 @@ def test_data_files_of_any_folder(tmp_path, monkeypatch, folder):
     assert len(cors) == 1
 
 
-def test_materials_are_materials_alone(tmp_path, sls):
+def test_files_of_materials_hold_materials_only(tmp_path, sls):
     (tmp_path / "m.nml").write_text(
         "&material name = 'x', model = 'rigid' /\n&impact velocity=3 /\n"
     )

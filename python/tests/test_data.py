@@ -148,7 +148,7 @@ ENCODINGS = {"en": "ascii", "de": "cp1252", "fr": "cp1252", "es": "cp1252", "ja"
 def test_all_combinations(
     tmp_path, language, order, style, mark, comma, encoding, end, units, index, blanks, preamble
 ):
-    """What is written in any way is read as it was meant, or refused."""
+    """Any combination is read correctly, or refused."""
     assume(not (mark == "," and comma) and not (mark == "blank" and (preamble or index)))
     names = list(LANGUAGES[language])
     if units[0] != "rad/s":
@@ -296,7 +296,7 @@ def test_columns_of_different_lengths(tmp_path):
     assert (len(first), len(second)) == (7, 6)
 
 
-def test_two_sweeps_that_nothing_tells_apart(tmp_path):
+def test_two_sweeps_that_cannot_be_separated(tmp_path):
     text = table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n")
     data = read(tmp_path, text + table(HERTZ, STORAGE / 2, LOSS / 2))
     with pytest.raises(vcor.InputError, match="data.csv:9: found a frequency"):
@@ -457,12 +457,12 @@ def test_refused(tmp_path, name):
     refused(tmp_path, text, *said)
 
 
-def test_files_that_are_none(tmp_path):
+def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(vcor.FileError, match="found a folder"):
         read_data(tmp_path)
     with pytest.raises(vcor.FileError, match="No such file"):
         read_data(tmp_path / "none.csv")
-    refused(tmp_path, b"PK\x03\x04rest", "no spreadsheet")
+    refused(tmp_path, b"PK\x03\x04rest", "spreadsheet cannot be read")
     refused(tmp_path, b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1rest", ".xlsx")
 
 
@@ -477,7 +477,7 @@ def test_files_have_a_bound(tmp_path, monkeypatch):
     st.binary(max_size=200)
     | st.text(alphabet="tfE'GvT,;\t \n[]()#0123456789.-eHzPaMC\"", max_size=120)
 )
-def test_whatever_a_file_holds(tmp_path, content):
+def test_any_content_of_a_file(tmp_path, content):
     """A table or a line that says why not; nothing else."""
     try:
         data = read(tmp_path, content)
@@ -613,7 +613,7 @@ def test_the_table_of_shift_factors(tmp_path, capsys):
     )
 
 
-def test_what_is_no_table(tmp_path, capsys):
+def test_data_that_make_no_table(tmp_path, capsys):
     path = tmp_path / "raw.csv"
     path.write_text(table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n"))
     with pytest.raises(SystemExit) as ended:

@@ -280,7 +280,7 @@ def test_fixed_parameter(vcor):
 
 
 def test_wrong_model(vcor):
-    """A model that is not that of the data is told."""
+    """A model that does not follow the data is reported."""
     words = ["fit", "--from-model", POWER_LAW, "--from", "1e-8", "--to", "1e-2", "--model"]
     assert NO_NOISE in vcor.succeeds(*words, "sls")
     assert NO_NOISE not in vcor.succeeds(*words, "power_law")
@@ -297,14 +297,14 @@ def noisy(modulus, noise, seed):
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("model", ["sls", "prony"])
 def test_noise_is_noise(vcor, model, seed):
-    """10 % of it on the right model say nothing against the model."""
+    """10 % of noise on the right model is not reported as a wrong model."""
     vcor.write(columns(TIMES, noisy(sls(TIMES), 0.1, seed)), "data.csv")
     out = vcor.succeeds("fit", "data.csv", "--model", model)
     assert float(re.search(r"rms misfit +(\S+) %", out)[1]) > 7
     assert NO_NOISE not in out
 
 
-def test_no_noise_is_so_large(vcor):
+def test_misfits_too_large_for_noise(vcor):
     """Curves that were shifted wrongly alternate, and so do their misfits."""
     frequency = np.logspace(1, 5, 40)
     storage, loss = sls_dynamic(frequency)
@@ -319,7 +319,7 @@ def test_no_noise_is_so_large(vcor):
 
 @pytest.mark.parametrize("model, most", [("cerf", 10), ("sls", 25), ("mittag_leffler", 6)])
 def test_little_noise_on_the_wrong_model(vcor, model, most):
-    """A few percent of misfit that are no noise are told, on the screen and in the group."""
+    """Systematic misfits of a few percent are noted on the screen and in the group."""
     times = np.logspace(-6, -2, 41)
     rates, moduli = [972.0, 6426.0, 34221.0], [20.181e6, 38.204e6, 87.344e6]
     modulus = 10.421e6 + np.exp(-np.outer(times, rates)) @ moduli
@@ -331,14 +331,14 @@ def test_little_noise_on_the_wrong_model(vcor, model, most):
 
 
 def test_misfit_that_does_not_matter(vcor):
-    """A series never is the power law, but follows it as close as any data."""
+    """A series follows a power law within the accuracy of any data."""
     words = ["--from-model", POWER_LAW, "--from", "1e-6", "--to", "1e-2", "--terms"]
     assert NO_NOISE not in vcor.succeeds("fit", *words, "8")
     assert NO_NOISE in vcor.succeeds("fit", *words, "3")
 
 
 def decades(times):
-    """A series of a term to a decade, equilibrium modulus 3 MPa."""
+    """A series with one term per decade and an equilibrium modulus of 3 MPa."""
     return 3.0e6 + np.exp(-np.outer(times, 10.0 ** np.arange(1, 7))) @ (1e7 * np.arange(1, 7))
 
 
@@ -369,7 +369,7 @@ def test_whole_window(vcor):
 
 
 def test_law_beyond_the_data(vcor):
-    """What a law says of times that the data do not have is marked."""
+    """Values of a law at times outside the data are marked."""
     times = np.logspace(-5, np.log10(5e-4), 41)
     vcor.write(columns(times, noisy(sls(times), 0.002, 1)), "data.csv")
     out = vcor.succeeds("fit", "data.csv", "--model", "sls")
@@ -382,7 +382,7 @@ def test_law_beyond_the_data(vcor):
     [(0.5, r"33 %"), (0.02, r"2\.0 %"), (2e-4, r"0\.020 %"), (3e-6, r"0\.00030 %")],
 )
 def test_percent(vcor, part, text):
-    """1.9 %, not 1.9E+00 %. An SLS that is given and off by a part."""
+    """1.9 %, not 1.9E+00 %. An SLS with a given relative error."""
     vcor.write(columns(TIMES, (1 + part) * sls(TIMES)), "data.csv")
     fixed = ["--fix", "glassy_modulus=15e6", "--fix", "beta=1200"]
     out = vcor.succeeds("fit", "data.csv", "--model", "sls", *fixed)
@@ -439,7 +439,7 @@ def misfit(out):
 
 @pytest.mark.parametrize("first, most, change", [("1e-6", 12, 7e-3), ("1e-8", 16, 1e-3)])
 def test_butyl(vcor, first, most, change):
-    """A Prony series for BUTYL's power law, as short and as close as the issue asks."""
+    """A Prony series for BUTYL's power law, with few terms and a small misfit."""
     out = vcor.succeeds("fit", "--from-model", POWER_LAW, "--from", first, "--to", "1e-2")
     assert len(group(out)["times"]) <= most
     assert misfit(out) <= 1e-3
@@ -448,7 +448,7 @@ def test_butyl(vcor, first, most, change):
 
 
 def test_butyl_with_few_terms(vcor):
-    """3, 5 and 8 terms: the more, the closer."""
+    """The misfit falls with 3, 5 and 8 terms."""
     words = ["--from-model", POWER_LAW, "--from", "1e-8", "--to", "1e-2"]
     off = []
     for terms in (3, 5, 8):
@@ -485,7 +485,7 @@ def test_material_by_name(vcor):
 
 
 def test_a_number_of_a_list(vcor):
-    """--set says it of the case that is sampled."""
+    """--set changes the case that is sampled."""
     prony = SLS.replace("'sls'", "'prony'").replace(
         "glassy_modulus = 15e6, alpha = 300, beta = 1200",
         "equilibrium_modulus = 4e6, moduli = 6e6, 9e6, times = 2e-4, 3e-3",
@@ -513,7 +513,7 @@ def test_a_shifted_material_is_sampled_at_its_temperature(vcor):
 
 
 def warning(vcor, *words, name=POWER_LAW):
-    """What run says of the band, without what it says of validity."""
+    """The notes of run on the band, without those on validity."""
     done = vcor("run", name, "--print", "cor", *words)
     assert done.code == SUCCESS
     return "".join(line for line in done.err.splitlines(keepends=True) if "validity " not in line)
@@ -549,7 +549,7 @@ COMMANDS = [
 
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
 def test_commands_of_the_document(vcor, words):
-    """They run, and what the tables and the warning say is what comes out."""
+    """They run, and give the numbers of the tables and the warning."""
     done = vcor(*[ROOT / word if word.startswith("examples/") else word for word in words])
     assert done.code == SUCCESS
     if words[0] == "run":

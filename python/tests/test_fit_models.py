@@ -51,7 +51,7 @@ def spoiled(samples, seed, noise=0.01):
 
 @pytest.mark.parametrize("dynamic", [False, True])
 @pytest.mark.parametrize("model", LAWS)
-def test_exact_data_give_the_parameters_back(model, dynamic):
+def test_exact_data_give_the_exact_parameters(model, dynamic):
     samples, truth = usual(model, dynamic), TRUTH[model]
     _, found = fit_law(model, {}, samples)
     assert found.values == pytest.approx(list(truth.values()), rel=1e-8)
@@ -66,7 +66,7 @@ def test_exact_data_give_the_parameters_back(model, dynamic):
 @pytest.mark.parametrize("dynamic", [False, True])
 @pytest.mark.parametrize("model", LAWS)
 def test_the_truth_is_within_three_standard_errors(model, dynamic):
-    """Of 300 draws 2 or 3 miss; here of 40, and the errors are not just wide."""
+    """Of 300 draws 2 or 3 miss; here 40 draws, and the errors are not too large either."""
     samples, truth = usual(model, dynamic), np.array(list(TRUTH[model].values()))
     missed, spread = 0, 0.0
     for seed in range(40):
@@ -89,14 +89,14 @@ def test_the_truth_is_within_three_standard_errors(model, dynamic):
     ids=["small", "hardly_begun", "like_a_fluid"],
 )  # fmt: skip
 def test_parameters_at_the_edge_of_the_data(model, changes, band):
-    """Nothing is a parabola there, and a modulus or a rate vanishes in the noise."""
+    """The sum of squares is not a parabola there, and a modulus or a rate vanishes in the noise."""
     samples, truth = sampled(model, *band, **changes), np.array(list(changes.values()))
     for seed in range(4):
         _, found = fit_law(model, {}, spoiled(samples, seed))
         assert (np.abs(found.values - truth) <= 3 * found.errors).all()
 
 
-def test_what_vanishes_is_at_its_bound():
+def test_a_parameter_that_vanishes_is_at_its_bound():
     samples = sampled("power_law", 1e-7, 1e-1, 61, equilibrium_modulus=0.0)
     _, found = fit_law("power_law", {}, samples)
     assert (found.values[0], found.states[0]) == (0.0, "bound")
@@ -113,7 +113,7 @@ def test_what_vanishes_is_at_its_bound():
 
 
 @pytest.mark.parametrize("dynamic", [False, True])
-def test_a_series_comes_back(dynamic):
+def test_a_series_is_found_again(dynamic):
     truth = TRUTH["prony"]
     series, found = fit_series(sampled("prony", 1e-6, 1e-1, 101, dynamic), None, None)
     assert series.moduli == pytest.approx(truth["moduli"], rel=1e-8)
@@ -136,7 +136,7 @@ def test_errors_of_a_series(equilibrium, last):
     assert missed <= 3
 
 
-def test_a_series_follows_a_power_law_and_no_noise():
+def test_a_series_follows_a_power_law_but_not_noise():
     samples = sampled("power_law", 1e-6, 1e-2, 81)
     series, _ = fit_series(samples, None, None)
     assert 8 <= len(series.times) <= 12 and np.abs(series.misfits).max() <= 1e-3
@@ -148,7 +148,7 @@ def test_a_series_follows_a_power_law_and_no_noise():
 
 
 def test_modes_that_the_data_do_not_see_are_labelled():
-    """Two terms within the data, and what is beside them."""
+    """Two terms within the data, and terms outside them."""
     t = np.geomspace(1e-5, 1e-2, 40)
     made = 1e6 + 5e6 * np.exp(-t / 1e-4) + 3e6 * np.exp(-t / 1e-3) + 2e6 * np.exp(-t / 2e-2)
     fit = fit_samples(Samples(t, made[None]), "data", terms=3)

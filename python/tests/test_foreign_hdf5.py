@@ -32,7 +32,7 @@ def copy(sweep, tmp_path):
     return tmp_path / "copy.h5"
 
 
-def test_a_file_of_others_is_read(sweep):
+def test_a_foreign_file_is_read(sweep):
     assert vcor.open(sweep).cor.dims == ("impact.velocity",)
 
 
@@ -78,7 +78,7 @@ def test_a_shape_of_its_own(copy):
         vcor.open(copy)
 
 
-def test_more_than_a_file_can_hold(copy):
+def test_shapes_larger_than_the_file(copy):
     with h5py.File(copy, "r+") as file:
         file["summary"].create_dataset("huge", (10**12,), "<f8", chunks=(1000,))
     with pytest.raises(vcor.FileError, match="'huge' has 8000000000000 bytes, more than the file"):
@@ -86,7 +86,7 @@ def test_more_than_a_file_can_hold(copy):
 
 
 def test_hdf5_that_does_not_end_or_crashes(copy, monkeypatch):
-    """The child that tries the file is killed, by its limit or by its fault; the parent is not."""
+    """The child process that tries the file ends at its limit or by a fault; the parent goes on."""
     monkeypatch.setattr(results, "_PATIENCE", 1)
     for harm in (lambda *_: [None for _ in iter(int, 1)], lambda *_: os.kill(os.getpid(), 11)):
         monkeypatch.setattr(results, "_datasets", harm)

@@ -77,7 +77,7 @@ def gallery(tmp_path_factory):
 
 
 def written(path):
-    """Texts of a figure, which Matplotlib leaves as remarks beside their letters."""
+    """Texts of a figure, which Matplotlib leaves as remarks next to their glyphs."""
     text = path.read_text(encoding="utf-8")
     return [found.replace("&gt;", ">") for found in re.findall(r"<!-- (.*?) -->", text)]
 
@@ -98,14 +98,14 @@ def test_content(gallery, name):
 
 
 def numbers(path):
-    """All numbers of a figure, and what stands between them."""
+    """All numbers of a figure, and the text between them."""
     parts = re.split(r"(-?\d+\.\d+)", path.read_text(encoding="utf-8"))
     return [float(word) for word in parts[1::2]], parts[::2]
 
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_up_to_date(gallery, name):
-    """What stands in the sources is what the commands make, to a hundredth of a point."""
+    """The figures in the sources are those of the commands, within a hundredth of a point."""
     made, between = numbers(gallery / f"{name}.svg")
     kept, around = numbers(FOLDER / f"{name}.svg")
     assert between == around

@@ -92,8 +92,8 @@ def test_coefficients_alone_do_not_fix_a_modulus():
     assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
 
 
-def test_a_pad_is_a_layer_and_no_half_space():
-    """Contact times and forces of a pad on steel: the half space is 68 % too stiff a rubber."""
+def test_a_pad_is_a_layer_not_a_half_space():
+    """Contact times and forces of a pad on steel: a half space gives a modulus 68 % too high."""
     pad = vcor.read(ROOT / "examples" / "rubber_pad_on_steel.nml")
     data = ROOT / "examples" / "identification" / "pad.csv"
     errors = {"contact_time": 0.01, "resilience": 0.004, "max_force": 0.01}
@@ -324,7 +324,7 @@ def sequence(case, height, n):
     return times
 
 
-def test_a_drop_height_beside_times_in_flight(sls):
+def test_a_drop_height_with_times_in_flight(sls):
     times = sequence(sls, 0.65, 4)
     free, sls["rubber.beta"] = ["rubber.beta"], 1000.0
     found = vcor.identify(sls, {"drop_height": [0.65] * 4, "bounce_time": times}, free)
@@ -357,7 +357,7 @@ def test_velocities_before_and_after(sls, tmp_path):
 @pytest.mark.parametrize(("offset", "sign", "mass"), [(0, 1, None), (-7, 1, None), (5, -1, None),
                                                       (3, -1, 0.02)])  # fmt: skip
 def test_records_on_a_baseline(sls, offset, sign, mass):
-    """Force or acceleration of a sensor that is not tared, or mounted the other way round."""
+    """Force or acceleration of a sensor that is not tared, or mounted upside down."""
     if mass:
         sls["sphere.mass"] = mass
     history = sls.history()
@@ -371,8 +371,8 @@ def test_records_on_a_baseline(sls, offset, sign, mass):
     found = vcor.identify(sls, data, ["rubber.beta"])
     low, high = found.estimates[0].interval_95
     assert low < 1200 < high and high / low < 1.05
-    assert ("turned over" in str(found)) is (sign < 0)
-    assert "no noise" not in str(found) and not found.alike
+    assert ("inverted" in str(found)) is (sign < 0)
+    assert "not noise" not in str(found) and not found.alike
     assert f"a baseline of {sign * offset * (mass or 1):.2g}"[:-1] in str(found)
 
 
@@ -385,14 +385,14 @@ def test_records_on_a_baseline(sls, offset, sign, mass):
         ([0.58123456789, 0.57123456789, 0.59123456789], {"cor": 0.01}, 1e-7),
     ],
 )
-def test_impacts_are_as_accurate_as_the_data_deserve(sls, cor, errors, accuracy):
+def test_the_accuracy_of_impacts_follows_from_the_data(sls, cor, errors, accuracy):
     data = {"velocity": [1.0, 3.0, 9.0], "cor": cor}
     block = observations(sls, data, ["rubber.beta"])
     assert identification._deserved([block], errors) == pytest.approx(accuracy, rel=1e-6)
 
 
-def test_misfits_that_are_no_noise(sls):
-    """A sensor that rings, which no material explains."""
+def test_misfits_that_are_correlated(sls):
+    """A sensor that rings, which no material describes."""
     history = sls.history()
     at, force = history.time.values, history.force.values
     at = np.linspace(0, at[-1], 200)
@@ -400,7 +400,7 @@ def test_misfits_that_are_no_noise(sls):
     ringing = 0.02 * force.max() * np.sin(2 * np.pi * at / at[-1] * 7)
     sls["rubber.beta"] = 1000.0
     found = vcor.identify(sls, {"time": at, "force": force + ringing}, ["rubber.beta"])
-    assert found.alike == ("data",) and "misfits of data are no noise" in str(found)
+    assert found.alike == ("data",) and "misfits of data are not noise" in str(found)
 
 
 LAB = {
@@ -413,7 +413,7 @@ LAB = {
 
 
 @pytest.mark.parametrize("name", LAB)
-def test_tables_as_a_laboratory_writes_them(tmp_path, name):
+def test_tables_of_laboratories(tmp_path, name):
     path = tmp_path / "drops.csv"
     path.write_text(LAB[name], encoding="utf-8")
     found, _ = read_columns(path, guess("sls"))
@@ -425,7 +425,7 @@ HEADS = "velocity [m/s],cor,contact_time [ms]\n"
 ROWS = "1,0.5,2.2\n2,0.52,2\n3,0.55,1.9\n"
 
 
-def test_a_column_without_a_number_is_nothing_to_be_warned_of(tmp_path, recwarn):
+def test_a_column_without_numbers_gives_no_warning(tmp_path, recwarn):
     path = tmp_path / "drops.csv"
     path.write_text("velocity [m/s];cor;contact_time [ms]\n1;0,5;\n2;0,4;\n")
     assert list(read_data(path)) == ["velocity", "cor"]
@@ -459,7 +459,7 @@ def test_a_column_without_a_number_is_nothing_to_be_warned_of(tmp_path, recwarn)
         (HEADS + 4 * "1,0.5,2.2\n", "found 2 distinct data for 3 parameters"),
     ],
 )
-def test_what_is_wrong_with_a_file_is_said_with_its_column(tmp_path, text, said):
+def test_an_error_in_a_file_names_its_column(tmp_path, text, said):
     path = tmp_path / "drops.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(vcor.InputError) as caught:
@@ -568,7 +568,7 @@ coefficient = 2e6, exponent = 0.1 /
 
 
 def test_one_datum(tmp_path, capsys):
-    """It needs its error, and tests nothing."""
+    """It needs a standard error, and cannot test the model."""
     (tmp_path / "ball.nml").write_text(BALL)
     (tmp_path / "one.csv").write_text("v [m/s],resilience [%]\n3.0,55\n")
     words = [str(tmp_path / name) for name in ("ball.nml", "one.csv")]
@@ -586,7 +586,7 @@ def test_one_datum(tmp_path, capsys):
 
 
 def test_rebounds_without_a_loss(monkeypatch):
-    """The exponent is at its bound, and no impact takes the slow method."""
+    """The exponent is at its bound, and every impact is solved by the fast method."""
     velocity = np.array([3.571, 3.571, 3.284, 2.971, 2.62, 2.214])
     solved, solve = [], vcor.Case._solve
 
@@ -667,8 +667,8 @@ def test_the_table_of_rebound():
             assert case.solve()["cor"] == pytest.approx(float(wanted), abs=6e-6)
 
 
-def test_where_the_model_does_not_hold_is_said(sls):
-    """Coefficients alone, of a plate that a fast sphere is too large for."""
+def test_the_limits_of_the_model_are_reported(sls):
+    """Coefficients only, with a sphere that is too large for the plate at high velocity."""
     sls["plate.waves"] = "none"
     velocity = [0.5, 10.0]
     cor = sls.points({"impact.velocity": velocity}).cor
@@ -691,14 +691,14 @@ class Valley:
         return (x, 9.0) if b - 2 * a > 1.5 else (np.array([a, 2 * a]), a**2)
 
 
-def test_another_minimum_on_the_line_is_no_end():
+def test_another_minimum_on_the_line_does_not_end_an_interval():
     """The derivatives say b = 5 a, and there the search ends in another minimum."""
     fit = Fit(Valley(), np.zeros(2), 0.0, np.array([[1.0, 0.0], [-5.0, 1.0]]), 0.0)
     for one, width in zip(fit.intervals(0), (1.0, 1.96), strict=True):
         assert one.high == pytest.approx(width, rel=0.01) == -one.low
 
 
-def test_temperatures_and_sources_are_told_apart():
+def test_temperatures_and_sources_are_distinguished():
     """In the table, the figure and the document; and the loss tangent is a result."""
     examples = ROOT / "examples" / "identification"
     case = vcor.read(examples / "block.nml")
@@ -736,7 +736,7 @@ def test_temperatures_and_sources_are_told_apart():
 
 
 def test_a_record_has_the_loss_tangent_of_its_impact(sls):
-    """Without measured impacts it is that of the case."""
+    """Without measured impacts the impact of the case is taken."""
     sls["plate.waves"] = "none"
     history = sls.history()
     data = {"time": history["time"].values, "force": history.force.values}

@@ -120,7 +120,7 @@ def test_the_first_part_is_one_point_a_thread(sls, monkeypatch):
 
 
 def test_a_case_lives_as_long_as_a_call():
-    """A call that was left alone still has its case."""
+    """A call that was interrupted still has its case."""
     case = vcor.Case({"case": {"title": "x"}})
     handle = case._pointer
     del case
@@ -128,7 +128,7 @@ def test_a_case_lives_as_long_as_a_call():
 
 
 def test_child_of_fork(sls):
-    """It has no threads, and makes one."""
+    """It has no threads, and starts one."""
     sls.solve()
     if not (child := os.fork()):
         ok = vcor._library._worker is None and sls.solve()["status"] == "separated"

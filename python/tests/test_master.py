@@ -40,7 +40,7 @@ def file_of(path, temperatures, dynamic=True, noise=0.0):
 
 
 @pytest.mark.parametrize("dynamic", [True, False])
-def test_shift_factors_and_constants_come_back(tmp_path, dynamic):
+def test_shift_factors_and_constants_are_found_again(tmp_path, dynamic):
     temperatures = np.arange(0, 60, 5)
     path = file_of(tmp_path / "raw.csv", temperatures, dynamic)
     found = vcor.master(path, reference_temperature=REFERENCE)
@@ -67,7 +67,7 @@ def test_errors_are_those_of_the_noise(tmp_path):
     assert found.log_error[away].max() < 0.5
 
 
-def test_points_lie_where_the_law_has_them(tmp_path):
+def test_points_are_shifted_by_the_law(tmp_path):
     # the storage moduli at -4 C hardly tell their shift to those at 0 C: the loss moduli do
     path = file_of(tmp_path / "raw.csv", [-4, *range(0, 60, 5)], noise=0.01)
     found = vcor.master(path, reference_temperature=REFERENCE)
@@ -157,8 +157,8 @@ def test_a_fit_shifts_by_the_same_code(tmp_path, capsys, program):
     capsys.readouterr()
 
 
-def test_misfits_of_a_broken_master_curve_are_no_noise(tmp_path, capsys):
-    """Each temperature errs by itself, while the points next to each other are of several."""
+def test_misfits_of_a_broken_master_curve_are_not_noise(tmp_path, capsys):
+    """Each temperature has its own misfit; neighbouring points are of several temperatures."""
 
     def broken(at, t):
         size = 1.1 if t % 10 else 1 / 1.1
@@ -212,7 +212,7 @@ def test_columns_and_units_and_what_was_taken(tmp_path, capsys):
 
 
 def test_shift_factors_fall():
-    """Neighbours that are alike within their scatter make no step up, which no material takes."""
+    """Neighbours that agree within their scatter give no rising step, which is refused later."""
     at = np.geomspace(1, 1000, 12)
     curves = [
         Curve(273.15 + t, True, at, np.array(moduli(at * shift, REFERENCE, True)))

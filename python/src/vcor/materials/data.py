@@ -54,7 +54,7 @@ def read_data(
     unit_of
         SI unit of the value at an address, for columns with names such as `rubber.beta`.
     whole
-        Whether what belongs together must be there, as the loss modulus beside the storage modulus.
+        Whether columns that belong together must be complete, as storage and loss modulus.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
                 f"{data.attrs['path']}:{one.index[at]}: found a {across} of "
                 f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
                 f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
-                "or a column of temperatures or sets that tells curves apart"
+                "or a column of temperatures or sets that separates the curves"
             )
         one = one.sort_values(across)
         temperature = one["temperature"].mean() if "temperature" in one else math.nan

@@ -105,7 +105,7 @@ class Fit:
     covariance: Floats = field(repr=False)
     model: str = field(repr=False)
     samples: Samples = field(repr=False)
-    #: Largest relative misfit, model over data less 1, and its place among the data
+    #: Largest relative misfit, model/data - 1, and its index in the data
     largest: float = field(repr=False)
     largest_place: int = field(repr=False)
     _document: dict[str, Any] = field(repr=False)
@@ -337,7 +337,7 @@ def check_fixed(model: str, fix: Mapping[str, float] | None) -> dict[str, float]
         raise UsageError(f"{option('fix')}: found alpha above beta, expected alpha <= beta: the "
                          "rubbery modulus is glassy_modulus*alpha/beta")  # fmt: skip
     if law and len(fixed) == len(known):
-        raise UsageError("all parameters are given: nothing is there to be fitted")
+        raise UsageError("all parameters are given: there is nothing to be fitted")
     return fixed
 
 
@@ -350,7 +350,7 @@ def _check(samples: Samples, model: str, terms: int | None, fixed: Mapping[str, 
         raise InputError(f"found {samples.data.size} moduli, expected at least {unknowns + 1}: the "
                          f"model has {unknowns} parameters to be found")  # fmt: skip
     if not samples.dynamic and first.max() <= (1 + CONSTANT) * first.min():
-        raise InputError("the modulus does not change: nothing is there to be fitted, model = "
+        raise InputError("the modulus does not change: there is nothing to be fitted, model = "
                          "'elastic' describes it")  # fmt: skip
     x = np.log(samples.at) * (-1 if samples.dynamic else 1)
     if not (x - x.mean()) @ np.log(first) < 0:
@@ -416,7 +416,7 @@ def _marked(
 ) -> list[Parameter]:
     """The parameters with marks where they depend on relaxation that the data do not show.
 
-    A modulus that still falls at the end of the data continues to fall, and no datum tells how far.
+    A modulus that still falls at the end of the data continues to fall, and no datum shows how far.
     A law extrapolates, correctly if it is the law of the material. A series does not: it adds what
     relaxes later to its equilibrium modulus and to its slowest term. The same holds at the
     beginning of the data. So the slope at that end decides: if the modulus would change by more
@@ -464,7 +464,7 @@ def _marked(
 
 
 def _fall(material: Material, time: float, dynamic: bool, flat: float) -> float:
-    """Fall of the modulus over a decade, from its slope; 0 if it is flat."""
+    """Fall of the modulus in one decade, by its slope; 0 if it is flat."""
     step = 1e-3
     times = time * np.exp([-step, step])
     moduli = moduli_at(material, 1 / times if dynamic else times, dynamic)[0]

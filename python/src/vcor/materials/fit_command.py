@@ -34,8 +34,8 @@ from .samples import Samples
 
 #: Decades before and after the contact time that are sampled, and samples per decade
 BEFORE, AFTER, PER_DECADE = 5, 1, 50
-#: Said of a model whose misfits are no noise
-SYSTEMATIC = "the model does not follow the data: its misfits are no noise"
+#: Note on a model whose misfits are not noise
+SYSTEMATIC = "the model does not follow the data: its misfits are not noise"
 
 
 class Sampled:
@@ -354,8 +354,8 @@ def _check_options(options: argparse.Namespace) -> dict[str, float]:
     if not given and len(options.data) != 1:
         raise UsageError("fit takes one data file, or --from-model CASE.nml")
     if not given and options.dynamic:
-        raise UsageError("--dynamic is for --from-model; data tell by the names of their columns "
-                         "what they are")  # fmt: skip
+        raise UsageError("--dynamic is for --from-model; the names of their columns say "
+                         "what data are")  # fmt: skip
     if not given and (options.first or options.last or options.points or options.set):
         raise UsageError("--from, --to, --points and --set are for --from-model")
     fix: dict[str, float] = {}

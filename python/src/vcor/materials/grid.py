@@ -73,7 +73,7 @@ def is_number(cell: str) -> bool:
 def has_thousands(cell: str) -> bool:
     """Whether a cell is a number whose thousands are apart.
 
-    Others of its column, as 1.234, would not tell what they are: no such number is taken.
+    Others of its column, as 1.234, would be ambiguous: no such number is taken.
     """
     return _THOUSANDS.fullmatch(cell) is not None
 
@@ -151,7 +151,7 @@ def _decoded(name: str, raw: bytes) -> str:
         return raw.decode(known[0])
     except UnicodeDecodeError:
         if known != ["utf-8"]:
-            raise InputError(f"{name}: this is no text in {known[0].upper()}") from None
+            raise InputError(f"{name}: the file is not text in {known[0].upper()}") from None
     texts: list[tuple[int, int, str]] = []
     for encoding in _ENCODINGS:
         try:
@@ -184,7 +184,7 @@ def _spreadsheet(name: str, raw: bytes) -> Grid:
         raise
     except Exception as error:
         raise InputError(
-            f"{name}: this is no spreadsheet that can be read ({type(error).__name__})"
+            f"{name}: the spreadsheet cannot be read ({type(error).__name__})"
         ) from None
     rows: list[Row] = []
     starts, line = [], 0
@@ -258,7 +258,7 @@ def separator_of(lines: list[str]) -> str:
     best = max(found, key=lambda mark: found[mark])
     if found[best]:
         return best
-    # a single column, or no numbers at all: what the text has
+    # a single column, or no numbers at all: the mark that the text has
     return next((mark for mark in "\t;" if any(mark in line for line in lines)), ",")
 
 

@@ -1,6 +1,6 @@
 """Identification of parameters from measured impacts, records of force and moduli.
 
-Least squares of (model - datum)/sigma over the logarithms of the parameters; sigma has a floor from
+Least squares of (model - datum)/sigma in the logarithms of the parameters; sigma has a floor from
 the digits of the data and the errors of the solution. What the data do not determine is said
 instead of a number.
 """
@@ -71,7 +71,7 @@ class Estimate:
     address: str
     unit: str
     value: float
-    #: Standard error; nan at a bound: the interval tells what is known
+    #: Standard error; nan at a bound: the interval shows what is known
     standard_error: float
     #: Profile intervals that hold the value with 68 and 95 %; an open end is 0 or inf
     interval_68: tuple[float, float]
@@ -129,7 +129,7 @@ class Identification:
     validity: str = "good"
     #: Which columns of the files were taken for what
     taken: tuple[str, ...] = ()
-    #: Files whose misfits are no noise: neighbours are alike
+    #: Files whose misfits are not noise: neighbours are correlated
     alike: tuple[str, ...] = ()
 
     def __getitem__(self, address: str) -> float:
@@ -219,7 +219,7 @@ def identify(
     Returns
     -------
     Identification
-        Values, intervals, and what the data do not say.
+        Values, intervals, and what the data do not determine.
 
     Raises
     ------
@@ -238,7 +238,7 @@ def identify(
     for address, value in fix.items():
         case[address] = value
     alone: Any = [data] if hasattr(data, "keys") else listed(data)
-    # a DataFrame is no Mapping
+    # a DataFrame is not a Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
     sources = [one if isinstance(one, dict) else File(one, columns, units) for one in sources]
     if not sources:
@@ -258,7 +258,7 @@ def identify(
     with progress_bar(None, None) as bar, one_thread():
         problem = Problem(case, free, blocks, scalars(errors), bar)
         best, limits = _determined(problem, *problem.best(seed))
-        return _judged(problem, best, limits, model or "")
+        return _result(problem, best, limits, model or "")
 
 
 def _deserved(blocks: Sequence[Block], errors: Mapping[str, float]) -> float:
@@ -287,7 +287,7 @@ def _determined(problem: Problem, x: Floats, chi2: float) -> tuple[Fit, list[lis
                          "of them was not found: give a guess that is closer")  # fmt: skip
 
 
-def _judged(
+def _result(
     problem: Problem, best: Fit, limits: list[list[Interval]], model: str
 ) -> Identification:
     """What the fit says."""
@@ -328,7 +328,7 @@ def _judged(
         chi2=chi2,
         dof=dof,
         taken=tuple(filter(None, taken)),
-        alike=_alike(problem, x, derivatives),
+        alike=_correlated(problem, x, derivatives),
         follows=problem.noise.estimated or chi2 <= float(chdtri(max(dof, 1), FOLLOWS)),
         relative_error=problem.noise.relative(problem.sigma) if problem.noise.estimated else None,
         combinations=tuple(
@@ -351,8 +351,8 @@ def _judged(
     )
 
 
-def _alike(problem: Problem, x: Floats, derivatives: Floats) -> tuple[str, ...]:
-    """Files of records and moduli in which neighbouring misfits are too much alike for noise."""
+def _correlated(problem: Problem, x: Floats, derivatives: Floats) -> tuple[str, ...]:
+    """Files of records and moduli whose neighbouring misfits are too correlated for noise."""
     r, found, first = problem.residuals(x), [], 0
     predicted = problem.predict(x[None])[0] / problem.sigma
     for block in problem.blocks:
@@ -394,7 +394,7 @@ def _validity(problem: Problem, case: Case) -> str:
 
 
 def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
-    """Prediction of cor, or what was measured of it, over velocity with its 95 % band."""
+    """Prediction of cor, or cor_sphere, against velocity with its 95 % band."""
     grid = np.geomspace(problem.speeds.min() / 2, problem.speeds.max() * 2, 41)
     name = "cor_sphere" if {"cor", "cor_sphere"} & {*problem.quantity} == {"cor_sphere"} else "cor"
     trial = probe(problem.case, grid, name)
@@ -565,5 +565,5 @@ def _work(options: argparse.Namespace) -> None:
     texts = {".nml": best.case.text(), ".json": written}
     stem = f"{Path(options.case).stem}_identified"
 
-    # one datum is no figure
+    # a single datum needs no figure
     finish(options, report, stem, texts, best.figure() if len(best.data) > 1 else None)

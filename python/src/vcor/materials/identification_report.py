@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 #: Data that are shown at most
 _MOST = 20
 #: Temperatures of one source that the legend of a figure names, each
-_TOLD = 6
-#: Abscissae of data that are no impacts
+_NAMED = 6
+#: Abscissae of data other than impacts
 _ACROSS = {
     "force": "time [s]",
     "relaxation_modulus": "time [s]",
@@ -61,8 +61,8 @@ def report(found: Identification) -> str:
     if found.dof:
         lines[-1] += f", AIC {found.aic:.1f}, BIC {found.bic:.1f}"
     for source in found.alike:
-        lines.append(f"the misfits of {source} are no noise, neighbours are alike: the model does "
-                     "not describe these data, and the intervals are too narrow")  # fmt: skip
+        lines.append(f"the misfits of {source} are not noise, neighbours are correlated: the model "
+                     "does not describe these data, and the intervals are too narrow")  # fmt: skip
     if not found.follows:
         lines.append("the data scatter more than their errors: the model (waves, law, material) "
                      "does not describe them")  # fmt: skip
@@ -137,11 +137,11 @@ def _looks(found: Identification) -> dict[tuple[str, str], _Look]:
         i, k = list(sources).index(source), kelvins.index(kelvin)
         # of many temperatures the lowest, the middle and the highest one
         own = [one for one in kelvins if (source, one) in keys]
-        told = own if len(own) <= _TOLD else (own[0], own[len(own) // 2], own[-1])
+        named = own if len(own) <= _NAMED else (own[0], own[len(own) // 2], own[-1])
         parts = [sources[source]] if len(sources) > 1 else []
         parts += [f"{float(kelvin) - ZERO_C:.4g} °C"] if warm else []
         looks[source, kelvin] = _Look(
-            shades[k if warm else i], "osD^v"[i % 5], ", ".join(parts) if kelvin in told else ""
+            shades[k if warm else i], "osD^v"[i % 5], ", ".join(parts) if kelvin in named else ""
         )
     return looks
 

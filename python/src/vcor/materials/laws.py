@@ -1,8 +1,9 @@
 """Fits of the models with a few parameters: sls, power_law, cerf, mittag_leffler.
 
 All are E_0 + E_1 f(t/tau; a), linear in two moduli for a given shape, a time, an exponent or both;
-f is the library's. So the shapes are scanned over all that the data resolve, with the best two
-moduli of each, and every local minimum of the scan starts an iteration: no start is guessed.
+f is the library's. So the shapes are scanned in the whole range that the data resolve, with the
+best two moduli of each, and every local minimum of the scan starts an iteration: no start is
+guessed.
 
 Near a solution that the data determine well the sum of squares is quadratic, and its derivatives
 give the standard errors. It is not if a parameter is known only to some ten percent, or is at the
@@ -105,7 +106,7 @@ class Found:
 
 
 class LawProblem(Problem):
-    """Residuals of a law over the logarithms of its free parameters, one that may be 0 itself."""
+    """Residuals of a law by the logarithms of its free parameters; one that may be 0 is linear."""
 
     def __init__(self, model: str, fixed: Mapping[str, float], samples: Samples) -> None:
         self.model, self.law, self.samples = model, LAWS[model], samples
@@ -190,7 +191,7 @@ class LawProblem(Problem):
         return found
 
     def residuals(self, x: Floats) -> Floats:
-        """Logarithms of model over data."""
+        """Logarithms of model/data."""
         return self.samples.logs(self.moduli(self.all(x)))
 
     def jacobian(self, x: Floats) -> Floats:
@@ -227,7 +228,7 @@ class LawProblem(Problem):
         return found
 
     def starts(self) -> list[Floats]:
-        """Values of all parameters at the local minima of a scan over all shapes, lowest first."""
+        """Values of all parameters at the local minima of a scan of all shapes, lowest first."""
         times, exponents = self._scan()
         grid = np.empty((len(self.names), len(times), len(exponents)))
         cost = np.empty(grid.shape[1:])
@@ -411,7 +412,7 @@ def _end(
         held.values[k] = place(step)
         inside = max((one for one in solutions if one <= step), default=0.0)
         x, found, _ = held.minimize(solutions[inside], 1e-6, 60)
-        # another valley may be lower; a scan over time and exponent takes as long as the whole fit
+        # another valley may be lower; a scan of time and exponent takes as long as the whole fit
         if found > enough and not ("exponent" in held.names and held.law.time):
             for start in held.starts():
                 y, other, _ = held.minimize(held.variables(start), 1e-6, 60)

@@ -1,6 +1,6 @@
 """Which values of the parameters data allow: intervals, and combinations without any limit.
 
-The sum of squares, least over the other parameters while one is held, rises by width^2 at the ends
+The least sum of squares while one parameter is held rises by width^2 at the ends
 of an interval (a profile). Parameters that the derivatives do not show to be determined may rise
 for another reason: the path has come to the end of a range, or so far that it is not followed. Then
 the data set no limit there. What they do not limit on either side they do not determine.
@@ -156,7 +156,7 @@ class _Profile:
         The root z of the rise is next to linear: from the last point with less than the width the
         line leads on, and a point with more closes the bracket. A point with far more may be one
         that the search of the others has not come to from so far away: the next step is shorter,
-        until it is nothing beside the way.
+        until it is negligible compared with the distance.
         """
         inside, z, point, step, longest = 0.0, 0.0, self.fit.x, math.inf, math.inf
         rate = 1 / self.error
@@ -234,8 +234,8 @@ class _Profile:
     def end(self, at: Floats, rise: float, inside: float) -> _End:
         """What the end is if it is at a point: set by data, a range, or open.
 
-        Data set none where there is no result, nor where another parameter that may have followed
-        this one has come to the end of its range, or so far that it is not followed.
+        The data set no end where there is no result, nor where another parameter that may have
+        followed this one has come to the end of its range, or so far that it is not followed.
         """
         x, problem = self.fit.x, self.fit.problem
         if not math.isfinite(rise):

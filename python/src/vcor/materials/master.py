@@ -55,7 +55,7 @@ class Master:
     flat: tuple[str, ...] = ()
     #: Whether the moduli are also proportional to the temperature
     vertical: bool = False
-    #: What was found where storage and loss moduli tell different shifts
+    #: Where storage and loss moduli give different shifts, in words
     apart: tuple[str, ...] = ()
     #: What was taken of each file
     taken: tuple[str, ...] = ()
@@ -214,7 +214,7 @@ def master(
     poisson_ratio
         Poisson's ratio, by which shear moduli become tensile ones; needed for them only.
     vertical_shift
-        Whether the moduli are also proportional to the temperature; None: the data tell.
+        Whether the moduli are also proportional to the temperature; None: the data decide.
     columns, units
         Which columns of the files are what, and their units, as for `vcor.read_data`.
 
@@ -228,8 +228,8 @@ def master(
     InputError
         The files have no moduli at two or more temperatures.
     NumericalError
-        Two neighbouring temperatures have no moduli in common, or are too flat to tell their shift
-        and no law of the other steps does.
+        Two neighbouring temperatures have no moduli in common, or are too flat to determine their
+        shift and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     if poisson_ratio is not None:
@@ -283,13 +283,13 @@ def of_curves(
     errors = np.sqrt([one.variance for one in found]) / math.log(10)
     reference = float(temperatures[middle])
     laws = tuple(laws_of(temperatures, steps, errors, reference))
-    told = tuple(one.told for one in found if one.told)
+    unknown = tuple(one.reason for one in found if one.reason)
     seen = np.isfinite(steps)
-    if told:
+    if unknown:
         # in the glass, below all steps that are seen, the law of the steps above does not hold
         best = min(laws, key=lambda one: one.misfit, default=None)
         if not (seen[0] and best and best.misfit < FOLLOWS and len(best.values) < seen.sum()):
-            raise NumericalError(f"{told[0]}; expected data without one of the two")
+            raise NumericalError(f"{unknown[0]}; expected data without one of the two")
         law = best.log_shift(temperatures, reference)
         steps = np.where(seen, steps, np.diff(law))
     shift, variance, unseen = (
@@ -303,7 +303,7 @@ def of_curves(
         np.where(unseen == unseen[middle], np.sqrt(np.abs(variance - variance[middle])), np.nan),
         laws,
         tuple(curves),
-        told,
+        unknown,
         vertical,
         apart,
     )
@@ -341,7 +341,7 @@ def _parser() -> _command.Parser:
     )
     what = "for shear moduli: Poisson's ratio, by which they become tensile ones"
     add("--poisson-ratio", type=float, metavar="NU", help=what)
-    what = "whether moduli are also proportional to the temperature; default: the data tell"
+    what = "whether moduli are also proportional to the temperature; default: the data decide"
     add("--vertical-shift", choices=("yes", "no"), help=what)
     add_data_options(parser)
     return parser

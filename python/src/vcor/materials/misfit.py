@@ -1,4 +1,4 @@
-"""Whether misfits are noise: neighbours of noise are independent, those of a model are not."""
+"""Whether misfits are noise: neighbours of noise are independent, of a wrong model they are not."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ LEAST_EXCESS = 5
 def are_alike(
     r: Floats, derivatives: Floats, quantities: int = 1, curve: NDArray[np.int_] | None = None
 ) -> bool:
-    """Whether neighbouring misfits are more alike than noise leaves them.
+    """Whether neighbouring misfits are more correlated than those of noise.
 
-    Noise is independent from point to point, while a wrong model errs in the same direction over
+    Noise is independent from point to point, while a wrong model errs in the same direction at
     many. So the test uses not the size of the misfits but their correlation with the next one,
     rho = sum r_i r_(i+1)/sum r_i^2, in their order. For noise it would be 0, but a fit has removed
     the smooth part that its p parameters could follow. Let r = M e with independent noise e of one

@@ -19,7 +19,7 @@ from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
 from .._text import near
 from ..case import Case, arrays, number, radius_of
-from .data import Columns, Units, curves, read_data, tensile
+from .data import SAME_TEMPERATURE, Columns, Units, curves, read_data, tensile
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,6 @@ UNLIKE = 2.0
 ERROR_OF_MODULI = 1e-11
 #: Accuracy with waves = 'body', where a finer one takes seconds
 BODY_ACCURACY = 1e-5
-#: Difference of temperatures that is none [K]
-SAME_TEMPERATURE = 1.0
 
 
 class Impacts:
@@ -189,10 +187,10 @@ class Impacts:
 
 
 class Record:
-    """Force over time of one impact; when it began is not known, nor where the sensor has its zero.
+    """Force against time of one impact; its start and the zero of the sensor are unknown.
 
     The baseline is a constant that is found with the begin of the contact, for any parameters; a
-    record whose largest deflection from it is negative is turned over.
+    record whose largest deflection from it is negative is inverted.
     """
 
     #: Numbers that are found for any parameters: start and baseline
@@ -221,7 +219,7 @@ class Record:
         self.turned = float(np.max(forces)) - zero < zero - float(np.min(forces))
         self.value = -forces if self.turned else forces
         self.quantity = ["force"] * len(self.at)
-        # an error relative to the value would take the zeros beside the contact as exact
+        # an error relative to the value would take the zeros outside the contact as exact
         self.sigma = factor * _sigma(columns, name)[good]
         largest = float(np.max(self.value)) - (-zero if self.turned else zero)
         self.scale = np.full(len(self.at), largest)
@@ -284,7 +282,7 @@ class Record:
 
     def said(self) -> str:
         """What was taken, and how: the baseline of the parameters that were tried last."""
-        turned = ", turned over" * self.turned
+        turned = ", inverted" * self.turned
         return (
             f"{self.taken or self.source}; force above a baseline of {self.baseline:.4g} N{turned}"
         )
@@ -450,7 +448,7 @@ def _as_velocities(
         drop = columns.pop("velocity", np.empty(0))
         drop = drop[np.isfinite(drop)]
         if drop.size and np.ptp(drop) > 1e-9 * np.max(drop):
-            raise InputError(f"{source}: found several velocities or heights beside the times of "
+            raise InputError(f"{source}: found several velocities or heights with the times of "
                              "one sequence of bounces, expected the first one")  # fmt: skip
         flights, sigmas = gravity * times / 2, gravity * sigma / 2
         speed = np.concatenate([drop[:1], flights])

@@ -34,7 +34,7 @@ COMPLETION = 1e-3
 COMPARED, TRIED = 1e-6, 1e-3
 #: Steps without success that end the search: a single one may be due to a poor start
 MOST_FAILURES = 2
-#: Modulus over the smallest datum below which a term, or equilibrium, is absent
+#: Modulus, divided by the smallest datum, below which a term, or equilibrium, is absent
 ABSENT = 1e-6
 #: Factors from the first time to the shortest, and from the last one to the longest, that a term
 #: may have: beyond them one sample alone would show it. Frequencies show terms farther away, which
@@ -93,7 +93,7 @@ class Series(Problem):
         return float(rest), moduli, times
 
     def residuals(self, x: Floats) -> Floats:
-        """Logarithms of model over data."""
+        """Logarithms of model/data."""
         rest, moduli, times = self.parts(x)
         return self.samples.logs(rest * self.samples.ones + self.terms(times) @ np.exp(moduli))
 
@@ -191,7 +191,7 @@ def _merge(series: Series) -> None:
 
 
 def fit_terms(spectrum: Series, terms: int, guide: Series | None = None) -> Series:
-    """The best series of so many terms: from the spectrum, and from times spread over the data."""
+    """The best series of so many terms, from the spectrum and from times spread over the data."""
     samples = spectrum.samples
     trials = []
     if guide is not None and len(guide.times) > 3:
@@ -283,13 +283,13 @@ def _concluded(series: Series) -> Found:
     inner = np.ones(len(x), dtype=bool)
     if bound:
         inner[0] = False
-    beside = np.concatenate([
+    at_end = np.concatenate([
         np.zeros(len(x) - n, dtype=bool),
         np.minimum(series.times - series.ends[0], series.ends[1] - series.times) < 1e-3,
     ])  # fmt: skip
     try:
         inverse, variance, structured = series.scatter(
-            series.jacobian(x), series.misfits, inner & ~beside
+            series.jacobian(x), series.misfits, inner & ~at_end
         )
     except NumericalError as error:
         raise NumericalError(f"{error} of model prony: take fewer, by {option('terms')} or "
@@ -304,7 +304,7 @@ def _concluded(series: Series) -> Found:
     if series.is_free:
         sizes[0] = samples.softest
     errors = (sizes * deviations * math.sqrt(variance))[order]
-    states = np.where(~inner | beside, "bound", "free")[order]
+    states = np.where(~inner | at_end, "bound", "free")[order]
     correlation = (inverse / np.outer(deviations, deviations))[np.ix_(order, order)]
     if series.given is not None:
         states, errors = np.append("fixed", states), np.append(0.0, errors)

@@ -1,4 +1,4 @@
-"""Tables of a file on their way into SI units: what kind they are, and what they must have."""
+"""Tables of a file converted to SI units: what kind they are, and what they must have."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .units import examples, plain_unit, quantities_of, size
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Temperature below which one without a unit is none in kelvin
+#: Temperature without a unit below which it is not in kelvin
 _COLDEST = 150.0
 #: Range of measured moduli, times and frequencies
 _LEAST, _MOST = 1e-30, 1e30
@@ -32,7 +32,7 @@ ALIKE = {
     "record": "records of an impact",
     "impacts": "impacts",
 }
-#: Columns that a table of some kind may have beside those that it needs
+#: Columns that a table of some kind may have besides those that it needs
 _BESIDE = {
     "dynamic": {"temperature", "set", "loss_tangent", "complex_modulus", "phase_angle"},
     "relaxation": {"temperature", "set"},
@@ -55,7 +55,7 @@ _SETTINGS = {"velocity", "drop_height", "temperature", "radius", "diameter", "ma
 
 
 class Reader:
-    """Tables of a file on their way into SI units."""
+    """Tables of a file converted to SI units."""
 
     def __init__(
         self, grid: Grid, choice: Choice, unit_of: Callable[[str], str] | None, whole: bool
@@ -389,7 +389,7 @@ class Reader:
             )
 
     def _kelvin(self, table: Table, column: Column, place: str) -> None:
-        """Refuse temperatures without a unit that are none in kelvin."""
+        """Refuse temperatures without a unit that cannot be in kelvin."""
         values = [number(column.cell(row)) for row in table.rows()]
         warmest = np.nanmax(values)
         if warmest < _COLDEST:
@@ -436,14 +436,14 @@ class Reader:
             tangent = np.tan(frame["phase_angle"])
         storage, loss = frame.get("storage_modulus"), frame.get("loss_modulus")
         if storage is not None and loss is not None:
-            for name, told, made in (
+            for name, given, made in (
                 ("tan delta", tangent, loss / storage),
                 ("the complex modulus", size_of, np.hypot(storage, loss)),
             ):
-                if told is None:
+                if given is None:
                     continue
                 with np.errstate(all="ignore"):
-                    off = float(np.nanmedian(np.abs(np.log(made / told))))
+                    off = float(np.nanmedian(np.abs(np.log(made / given))))
                 if off > _CONTRADICTION:
                     raise InputError(
                         f"{self.path}:{table.line}: found {name} that contradicts the storage "

@@ -1,4 +1,4 @@
-"""Moduli that a material is fitted to, and what their misfits say."""
+"""Moduli that a material is fitted to, and statistics of their misfits."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def one_thread() -> AbstractContextManager[Any]:
 
 @dataclass(frozen=True)
 class Samples:
-    """Relaxation moduli over time, or storage and loss moduli over angular frequency."""
+    """Relaxation moduli against time, or storage and loss moduli against angular frequency."""
 
     #: Times [s] or angular frequencies [rad/s], rising, shape (n,)
     at: Floats
@@ -80,20 +80,20 @@ class Samples:
         return np.repeat([1.0, 0.0][: len(self.moduli)], len(self.at))
 
     def logs(self, moduli: Floats) -> Floats:
-        """Residuals: logarithms of moduli over the data."""
+        """Residuals: logarithms of moduli/data."""
         rest: Floats = np.log(np.maximum(moduli, 1e-200) / self.data)
         return rest
 
 
 class Problem:
-    """Residuals over variables with limits, which the fits of laws and of series have in common."""
+    """Residuals of variables with limits, which the fits of laws and of series have in common."""
 
     samples: Samples
     low: Floats
     high: Floats
 
     def residuals(self, x: Floats) -> Floats:
-        """Logarithms of model over data, shape (m,)."""
+        """Logarithms of model/data, shape (m,)."""
         raise NotImplementedError
 
     def jacobian(self, x: Floats) -> Floats:
@@ -115,7 +115,7 @@ class Problem:
         return found.x, 2 * found.cost, found.status > 0
 
     def scatter(self, points: Floats, r: Floats, free: Floats) -> tuple[Floats, float, bool]:
-        """Standard errors of the variables at a solution, over that of a residual, and the rest.
+        """Covariance of the variables at a solution, and statistics of the residuals.
 
         Variables at a bound are unknowns like the others, so that the errors of the others allow
         for their possible values; they take no part in the variance.
@@ -132,18 +132,18 @@ class Problem:
         Returns
         -------
         Floats, float, bool
-            Covariance of the variables over the variance of a residual, this variance, and whether
-            the residuals are too much alike for noise.
+            Covariance of the variables divided by the variance of a residual, this variance, and
+            whether the residuals are too correlated for noise.
         """
         inner = points[:, free]
         if condition(inner) > WORST_CONDITION:
             raise NumericalError("the data do not determine all parameters")
         variance = float(r @ r) / max(1, len(r) - inner.shape[1])
         rms = math.sqrt(r @ r / len(r))
-        told = rms > NEGLIGIBLE and are_alike(
+        structured = rms > NEGLIGIBLE and are_alike(
             r, inner, len(self.samples.moduli), self.samples.curve
         )
-        return covariance(points), variance, told or rms > TOO_LARGE
+        return covariance(points), variance, structured or rms > TOO_LARGE
 
 
 def condition(derivatives: Floats) -> float:

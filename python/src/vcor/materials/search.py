@@ -1,4 +1,4 @@
-"""Search of the parameters with which a case follows data: least squares over their logarithms."""
+"""Search of the parameters with which a case follows data: least squares in their logarithms."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ ROUNDS, SETTLED = 8, 0.01
 
 
 class Problem:
-    """Residuals of all data over the logarithms x of the parameters."""
+    """Residuals of all data as functions of the logarithms x of the parameters."""
 
     def __init__(
         self, case: Case, free: Sequence[str], blocks: Sequence[Block],
@@ -76,7 +76,7 @@ class Problem:
         #: Degrees of freedom; what a record leaves unknown counts, too
         self.dof = len(self.value) - len(self.free) - sum(block.unknowns for block in self.blocks)
         few = self.dof < (1 if self.noise.estimated else 0)
-        # copies of a datum neither determine more nor tell how much data scatter
+        # copies of a datum neither determine more nor show how much data scatter
         few |= len({*where}) < len(self.free)
         few |= self.noise.estimated and len(several) <= len(self.free)
         if few:
@@ -142,7 +142,7 @@ class Problem:
         self, x: Floats, which: Sequence[int], most: int = 60, tolerance: float = 1e-12,
         *, ranges: tuple[Floats, Floats] | None = None, again: bool = True,
     ) -> tuple[Floats, float]:  # fmt: skip
-        """Least squares over some of the parameters from x; inf where there is no result."""
+        """Least squares in some of the parameters from x; inf where there is no result."""
         which, x = list(which), x.copy()
         low, high = ranges or (self.low, self.high)
         x[which] = np.clip(x, low + 1e-6, high - 1e-6)[which]

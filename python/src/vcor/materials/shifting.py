@@ -22,7 +22,7 @@ from .._library import Error, Floats, NumericalError
 from ..case import Case
 from .units import ZERO_C
 
-#: Degree of the polynomial over the logarithm of frequency that two curves share
+#: Degree of the polynomial in the logarithm of frequency that two curves share
 DEGREE = 4
 #: Standard errors by which a shift has to differ from one that makes the warmer material slower
 UNSURE = 3.0
@@ -34,7 +34,7 @@ FOLLOWS = 2.0
 AGREE = 3.0
 #: Relative standard error from which on a constant of a law is not determined
 UNDETERMINED = 1 / 3
-#: Least change of ln a_T between temperatures, far below what data tell
+#: Least change of ln a_T between temperatures, far below what data resolve
 NO_STEP = 1e-6
 #: Reduction of the sum of squares, in variances, from which on moduli follow the temperature
 VERTICAL = 9.0
@@ -63,7 +63,7 @@ class Curve:
 
     @property
     def x(self) -> Floats:
-        """Logarithm of the frequency, or of one over the time, rising."""
+        """Logarithm of the frequency, or of the reciprocal of the time, rising."""
         return np.log(self.at) if self.dynamic else -np.log(self.at)
 
     @property
@@ -103,7 +103,7 @@ class Step:
     squares: float = 0.0
     dof: int = 0
     #: Why there is none
-    told: str = ""
+    reason: str = ""
     #: Said where storage and loss moduli do not agree
     apart: str = ""
 
@@ -117,13 +117,13 @@ class _Trial:
 
     @property
     def agree(self) -> bool:
-        """Whether all moduli tell the step that the storage moduli tell.
+        """Whether all moduli give the step that the storage moduli give.
 
-        Where these are too flat to tell one, the step of all has to differ from none.
+        Where these are too flat to determine one, the step of all must differ from 0.
         """
         every, storage = self.every, self.storage
-        if every.told or storage.told:
-            return not every.told and every.value < -2 * math.sqrt(every.variance)
+        if every.reason or storage.reason:
+            return not every.reason and every.value < -2 * math.sqrt(every.variance)
         return abs(every.value - storage.value) <= AGREE * math.sqrt(storage.variance)
 
 
@@ -159,8 +159,8 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
     def misfit(shift: float) -> float:
         return float(misfits(np.array([shift]))[0])
 
-    # a warmer material is faster: its curve belongs to lower frequencies of the colder one, beside
-    # which it may end
+    # a warmer material is faster: its curve belongs to lower frequencies of the colder one, or to
+    # those below them
     trials = np.linspace(cold.x[0] - warm.x[-1], 0.1 * span, 301)
     values = misfits(trials)
     best = int(np.argmin(values))
@@ -169,12 +169,12 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
     pair = f"the {kind} moduli at {cold.place} and {warm.place}"
     noise = max(values[best] / dof, 1.0)
     if values[-1] < values[best] + UNSURE**2 * noise:
-        told = f"{pair} are too flat for their scatter to tell the shift between them"
-        return Step(told=told + ", and so are the loss moduli" * cold.dynamic)
+        reason = f"{pair} are too flat for their scatter to determine the shift between them"
+        return Step(reason=reason + ", and so are the loss moduli" * cold.dynamic)
     if best in (0, len(trials) - 1):
-        told = f"{pair} have none in common, by which alone they are shifted; expected more "
-        told += f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
-        return Step(told=told, squares=math.inf)
+        reason = f"{pair} have none in common, by which alone they are shifted; expected more "
+        reason += f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
+        return Step(reason=reason, squares=math.inf)
     h = trials[1] - trials[0]
     found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
                             options={"xatol": 1e-8})  # fmt: skip
@@ -188,7 +188,7 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
 def steps_of(curves: Sequence[Curve], vertical: bool | None = None) -> tuple[list[Step], bool]:
     """Steps between neighbours, and whether the moduli are proportional to the temperature too.
 
-    The moduli tell by the sum of squares of all of them, unless `vertical` is given. The loss
+    The sum of squares of all moduli decides, unless `vertical` is given. The loss
     moduli of a pair count in it unless they contradict the storage moduli either way, as those of a
     glass, which are often those of the instrument.
     """
@@ -199,7 +199,9 @@ def steps_of(curves: Sequence[Curve], vertical: bool | None = None) -> tuple[lis
             [way.every if any(one.agree for one in trial) else way.storage for way in trial]
             for trial in trials
         ]
-        seen = [ways for ways in compared if not any(one.told and not one.squares for one in ways)]
+        seen = [
+            ways for ways in compared if not any(one.reason and not one.squares for one in ways)
+        ]
         plain, shifted = (sum(ways[i].squares for ways in seen) for i in (0, 1))
         noise = max(1.0, shifted / max(1, sum(ways[1].dof for ways in seen)))
         vertical = plain > shifted + VERTICAL * noise
@@ -208,9 +210,9 @@ def steps_of(curves: Sequence[Curve], vertical: bool | None = None) -> tuple[lis
         chosen = trial[vertical]
         step = chosen.every if chosen.agree or not pair[0].dynamic else chosen.storage
         if math.isinf(step.squares):
-            raise NumericalError(step.told)
-        if not (step is chosen.every or step.told):
-            said = "tell another shift than the storage moduli, by which alone they are shifted"
+            raise NumericalError(step.reason)
+        if not (step is chosen.every or step.reason):
+            said = "give another shift than the storage moduli, by which alone they are shifted"
             places = f"{pair[0].place} and {pair[1].place}"
             step = dataclasses.replace(step, apart=f"the loss moduli at {places} {said}")
         found.append(step)

@@ -14,6 +14,7 @@ from .. import _command
 from .._library import InputError, UsageError, within
 from .._text import command, option
 from .data import (
+    SAME_TEMPERATURE,
     Columns,
     Units,
     add_data_options,
@@ -23,9 +24,6 @@ from .data import (
     read_data,
     tensile,
 )
-
-#: Difference from the temperature that is asked for that is none [K]
-_SAME = 1.0
 
 
 def table(
@@ -65,7 +63,9 @@ def table(
         data = tensile(data, within(poisson_ratio, option("poisson_ratio"), -1, 0.5))
     found = curves(data)
     if temperature is not None:
-        found = [one for one in found if abs(one.attrs["temperature"] - temperature) < _SAME]
+        found = [
+            one for one in found if abs(one.attrs["temperature"] - temperature) < SAME_TEMPERATURE
+        ]
     if len(found) != 1:
         known = ", ".join(f"{one.attrs['temperature']:.2f} K" for one in curves(data)
                           if not math.isnan(one.attrs["temperature"]))  # fmt: skip

@@ -31,7 +31,7 @@ _STEP = re.compile(
 class Table:
     """Rows of numbers under one head."""
 
-    #: Line of the head, 0: there is none
+    #: Line of the head, 0: there is no head
     line: int
     heads: list[Head]
     #: Temperature in a title [K], nan: none, and rows, for each part below a title
@@ -206,7 +206,7 @@ def tables_of(grid: Grid, choice: Choice) -> list[Table]:
 def _table(
     grid: Grid, gap: list[Row], run: list[Row], hints: Mapping[str, str], choice: Choice
 ) -> Table | None:
-    """A run of numbers with the head that stands in the lines above it, None: there is none."""
+    """A run of numbers with the head that stands in the lines above it, None: there is no head."""
     width = max(i for row in run for i, cell in enumerate(row.cells) if cell) + 1
     above = [row for row in gap if row.remark or any(row.cells)]
     units: list[str] | None = None

@@ -84,7 +84,7 @@ def plain_unit(unit: str) -> str:
 
 
 def size(unit: str, si: str) -> tuple[float, float] | None:
-    """A unit of a quantity as factor and offset to the SI unit, None if it is no such unit."""
+    """A unit of a quantity as factor and offset to the SI unit, None if it is another unit."""
     unit = plain_unit(unit)
     if unit == si:
         return 1.0, 0.0
