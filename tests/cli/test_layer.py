@@ -6,6 +6,7 @@ nothing with vcor but the equations.
 
 import json
 import math
+import re
 
 import pytest
 from program import INPUT, NUMERICAL, ROOT
@@ -240,6 +241,20 @@ def test_too_thin(vcor):
     done = vcor("run", "case.nml", "--set", "plate.thickness=1e-5", "--print", "cor")
     assert done.code == NUMERICAL and done.out == "nan\n"
     assert "20 times the thickness" in done.err
+    found, limit = re.search(r"found an indentation of (\S+) m, expected at most (\S+) m", done.err).groups()
+    assert float(found) > float(limit) > 0
+
+
+def test_a_sphere_that_sinks_into_its_plate(vcor):
+    """Springs beyond its radius have no profile of a sphere."""
+    vcor.write("""&impact velocity = 0.003, gravity = 9.81 /
+&sphere shape = 'true_sphere', radius = 0.19, mass = 480, material = 'ball' /
+&plate material = 'plate', thickness = 1.9, base = 'bonded', waves = 'body' /
+&material name = 'ball', model = 'rigid' /
+&material name = 'plate', model = 'elastic', modulus = 5e3, density = 15, poisson_ratio = 0.2 /
+""")
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and "0.85 times the radius of a true sphere" in done.err
 
 
 def test_spheres_of_the_layer(vcor):

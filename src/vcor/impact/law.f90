@@ -73,7 +73,7 @@ module vcor_impact_law
       procedure, non_overridable :: adopt
       procedure, non_overridable :: resize
       procedure, non_overridable :: stiffening
-      procedure, non_overridable :: exceeds
+      procedure, non_overridable :: deepest
    end type contact_law_t
 
 contains
@@ -354,21 +354,24 @@ contains
       ratio = ratio*4.0_wp/3.0_wp*(s/self%sphere)**hertz/((1.0_wp + tanh(x)**2)*x - tanh(x))
    end function stiffening
 
-   !> Whether an indentation is larger than the law is known for
-   elemental function exceeds(self, s)
+   !> Largest indentation up to which the law is known
+   elemental function deepest(self) result(s)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
-      real(wp), intent(in) :: s
-      logical :: exceeds
+      real(wp) :: s
 
-      exceeds = .false.
-      if (allocated(self%table)) &
-         exceeds = self%scale*abs(s)**(self%start_exponent - 1.0_wp) > self%table%reach
-   end function exceeds
+      s = huge(1.0_wp)
+      if (.not. allocated(self%table)) return
+      if (self%start_exponent > 1.0_wp) then
+         s = (self%table%reach/self%scale)**(1.0_wp/(self%start_exponent - 1.0_wp))
+      else if (self%scale > self%table%reach) then
+         s = 0.0_wp
+      end if
+   end function deepest
 
    !> Profile h(x) of the body in the method of dimensionality reduction: it touches the half space
    !> up to x at the indentation h(x), x^2/R for a sphere. Flat for a punch, whose radius is K/2. A
-   !> true sphere has none beyond its radius
+   !> true sphere has none beyond its radius, but as many times that as no contact reaches
    elemental function profile(self, factor, x) result(h)
       class(contact_law_t), intent(in) :: self
       !> Factor K of the shape [m^(2-n)]
@@ -380,8 +383,7 @@ contains
 
       h = 0.0_wp
       if (self%sphere > 0.0_wp) then
-         h = huge(1.0_wp)
-         if (x < self%sphere) h = x*atanh(x/self%sphere)
+         h = x*atanh(min(x/self%sphere, nearest(1.0_wp, -1.0_wp)))
       else if (self%start_exponent > 1.0_wp) then
          h = (2.0_wp*x/(self%start_exponent*factor)) &
             **(1.0_wp/(self%start_exponent - 1.0_wp))

@@ -50,8 +50,8 @@ module vcor_solver_coupled
       type(slot_t), allocatable :: slot(:)
       !> Place of the newest kernel
       integer :: newest = slots
-      !> Steps that the impact has taken so far
-      integer :: work = 0
+      !> Operations that the impact has taken so far
+      real(wp) :: work = 0.0_wp
       !> Mesh of the impact solved last, and that which all take
       type(plan_t) :: found, kept
    contains
@@ -97,8 +97,8 @@ module vcor_solver_coupled
 
    !> Steps of the coarsest mesh, the finest mesh, and its steps
    integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
-   !> Steps of all marches of an impact, which a contact whose end is hard to find may take
-   integer, parameter :: most_work = 12*most_steps
+   !> Operations that an impact may take, some ten seconds
+   real(wp), parameter :: most_work = 4.0e10_wp
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp
    !> Steps to the time scale of a contact that resolve it
@@ -155,7 +155,7 @@ contains
 
       search%end_time = self%settings%end_time
       if (.not. search%end_time > 0.0_wp) search%end_time = impact%patience(impact%time_scale())
-      self%work = 0
+      self%work = 0.0_wp
       self%found = plan_t()
       search%window = self%kept%window
       search%radius = self%kept%radius
@@ -362,10 +362,12 @@ contains
 
       integer :: i
 
-      self%work = self%work + mesh%steps
+      self%work = self%work + mesh%operations()
       if (self%work > most_work) then
-         call raise(error, error_numerical, 'the end of the contact depends on the length of the ' &
-            //'steps, however short: the plate is too light or too soft for the sphere')
+         call raise(error, error_numerical, 'the impact would take more than ' &
+            //as_text(most_work)//' operations, some ten seconds: the end of the contact depends ' &
+            //'on the length of the steps on a plate that is too light or too soft for the ' &
+            //'sphere; otherwise give a larger solver.accuracy')
          return
       end if
       do i = 1, slots

@@ -114,6 +114,7 @@ contains
          'give a larger solver.accuracy or a shorter solver.time_step']
       character(len=*), parameter :: fault(2) = [character(len=45) :: &
          'makes the force fall as the indentation grows', 'keeps the force from returning to zero']
+      character(len=9) :: depth(2)
       real(wp) :: ratio, scale
 
       call solver%solve(impact, trajectory, error)
@@ -123,10 +124,13 @@ contains
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
             call outcome%settle(impact)
          if (all(outcome%status /= [contact_separated, contact_resting])) return
-         if (impact%law%exceeds(outcome%max_indentation)) then
+         if (outcome%max_indentation > impact%law%deepest()) then
+            write (depth, '(es9.2)') [outcome%max_indentation, impact%law%deepest()]
             call raise(error, error_numerical, 'the contact becomes wider than its law is known ' &
-               //'for, 20 times the thickness of a layer on a base, 0.85 times the radius of a ' &
-               //'true sphere: take a slower impact')
+               //'for: found an indentation of '//trim(adjustl(depth(1)))//' m, expected at ' &
+               //'most '//trim(adjustl(depth(2)))//' m, where the radius of the contact is 20 ' &
+               //'times the thickness of a layer on a base or 0.85 times the radius of a true ' &
+               //'sphere; take a slower impact')
             return
          end if
          if (outcome%status == contact_resting) return

@@ -28,6 +28,8 @@ module vcor_solver_coupled_kernel
       real(wp) :: window = 0.0_wp
       !> Radius of the row of springs [m], > 0
       real(wp) :: radius = 0.0_wp
+   contains
+      procedure :: operations
    end type mesh_t
 
    !> Response of a face on a mesh
@@ -38,8 +40,8 @@ module vcor_solver_coupled_kernel
       !> Weights of the springs, shape (0:steps-1) [m/N per m]
       real(wp), allocatable :: local(:)
       !> Weights of the waves of an elastic half space, which pass, from the hats to the axis [m/N],
-      !> that of lag n from hat j at j + hats (steps - 1 - n); unallocated without waves
-      real(wp), allocatable :: passing(:)
+      !> that of lag n from hat j at (j, lags - n), shape (hats, lags); unallocated without waves
+      real(wp), allocatable :: passing(:, :)
       !> Speed of its shear waves [m/s]; 0 without waves
       real(wp) :: speed = 0.0_wp
       !> Whether the springs remember: more than their first weight counts
@@ -63,6 +65,20 @@ module vcor_solver_coupled_kernel
    end type kernel_t
 
 contains
+
+   !> Operations that a kernel and a march take, about: with as many wavenumbers as steps, for each
+   !> wavenumber and frequency the response and products of the hats; the transform of these; and
+   !> for each step what all steps before have left in springs and hats
+   pure function operations(self)
+      class(mesh_t), intent(in) :: self
+      real(wp) :: operations
+
+      ! of the response
+      real(wp), parameter :: response = 100.0_wp
+
+      operations = real(self%steps, wp)**2*(response + 1.5_wp*real(self%hats, wp)**2 &
+         + real(self%springs, wp))
+   end function operations
 
    !> Whether the kernel is that of a face on a mesh
    function is_for(self, face, mesh) result(yes)
@@ -147,9 +163,11 @@ contains
       real(wp), intent(in) :: transform(:, 0:)
       type(error_t), allocatable, intent(out) :: error
 
+      ! part of the window in which waves have passed; the number of lags is a multiple of `turn`
+      integer, parameter :: part = 4, turn = 4
       complex(wp), allocatable :: excess(:)
       real(wp), allocatable :: k(:), weight(:), dual(:, :), pairs(:, :), parts(:, :), found(:, :)
-      complex(wp), allocatable :: p(:)
+      complex(wp), allocatable :: passing(:)
       complex(wp) :: value
       integer :: hats, steps, i, j, l, n
 
@@ -158,12 +176,14 @@ contains
       allocate (self%now(hats, hats), source=0.0_wp)
       allocate (found(hats*(hats + 1)/2, 2*size(s)), source=0.0_wp)
       if (face%has_response()) then
-         p = self%p
          if (face%has_waves) then
             self%speed = self%rate()/real(face%per_shear_speed(cmplx(self%rate(), kind=wp)), wp)
-            p = [p, s/self%speed]
+            l = turn*((steps - 1)/(part*turn) + 1)
+            allocate (passing, source=nodes(l, 1.0_wp/self%rate())/self%speed)
+         else
+            allocate (passing(0))
          end if
-         call wavenumbers(face, p, self%mesh%radius, self%row%node(2), k, weight)
+         call wavenumbers(face, [self%p, passing], self%mesh%radius, self%row%node(2), k, weight)
          allocate (dual(hats, size(k)), excess(size(k)), pairs(size(found, 1), size(k)), &
             parts(size(k), 2*size(s)))
          call transforms(self%row%node, k, dual, error)
@@ -189,7 +209,7 @@ contains
                found(n, 2*l + 2) = aimag(value)
             end do
          end do
-         if (face%has_waves) call add_passing(self, face, k, weight, dual, s/self%speed, transform)
+         if (face%has_waves) call add_passing(self, face, k, weight, dual, passing)
       end if
       do l = 0, size(s) - 1
          value = face%drift(s(l))
@@ -215,33 +235,29 @@ contains
    end subroutine add_response
 
    !> Weights of the waves that pass: of an elastic half space as stiff as the plate in a step
-   subroutine add_passing(self, face, k, weight, dual, p, transform)
+   subroutine add_passing(self, face, k, weight, dual, p)
       type(kernel_t), intent(inout) :: self
       type(face_t), intent(in) :: face
       !> Wavenumbers [1/m] and their weights [1/m]
       real(wp), intent(in) :: k(:), weight(:)
       !> Transforms of the functions dual to the hats, shape (hats, size(k))
       real(wp), intent(in) :: dual(:, :)
-      !> Laplace variables over the speed of its shear waves [1/m]
+      !> Laplace variables over the speed of its shear waves [1/m], for an even number of lags
       complex(wp), intent(in) :: p(:)
-      !> Matrix of the inverse transform, of `weights`
-      real(wp), intent(in) :: transform(:, 0:)
 
       complex(wp) :: excess(size(k))
-      real(wp) :: parts(size(k), 2*size(p)), share(size(k)), axis(size(dual, 1), self%mesh%steps)
-      integer :: l
+      real(wp) :: parts(size(k), 2*size(p)), share(size(k))
+      integer :: l, lags
 
+      lags = 2*(size(p) - 1)
+      share = dual(1, :)*weight/(pi*real(face%plate_modulus(cmplx(self%rate(), kind=wp)), wp))
       do l = 1, size(p)
          call face%half_space_response(k, p(l), excess)
-         parts(:, 2*l - 1) = real(excess, wp)
-         parts(:, 2*l) = aimag(excess)
+         parts(:, 2*l - 1) = share*real(excess, wp)
+         parts(:, 2*l) = share*aimag(excess)
       end do
-      share = dual(1, :)*weight/(pi*real(face%plate_modulus(cmplx(self%rate(), kind=wp)), wp))
-      do l = 1, size(parts, 2)
-         parts(:, l) = parts(:, l)*share
-      end do
-      axis = matmul(matmul(dual, parts), transform)
-      self%passing = reshape(axis(:, self%mesh%steps:1:-1), [size(axis)])
+      self%passing = matmul(matmul(dual, parts), weights(lags))
+      self%passing = self%passing(:, lags:1:-1)
    end subroutine add_passing
 
    !> Nodes and weights of the quadrature in k: panels of Gauss nodes, short where the response of

@@ -458,7 +458,7 @@ contains
       ! Poisson's ratios of 0.5 to 0 on elastic half spaces and steps that resolve it; its error
       real(wp), parameter :: advance = 0.07_wp, unknown = 0.03_wp
       real(wp) :: steady(size(axis)), fast
-      integer :: i, k
+      integer :: first, i, k, last
 
       course%status = course_ended
       k = course%steps
@@ -472,11 +472,12 @@ contains
       end if
       steady = axis
       if (allocated(kernel%passing)) then
-         associate (n => kernel%mesh%hats, steps => kernel%mesh%steps)
+         associate (n => kernel%mesh%hats, lags => size(kernel%passing, 2))
             do i = 1, size(axis)
-               associate (used => n*(k - size(axis) + i))
-                  steady(i) = axis(i) + dot(kernel%passing(n*steps - used + 1:), hats(:used))
-               end associate
+               last = k - size(axis) + i
+               first = max(1, last - lags + 1)
+               steady(i) = axis(i) + sum(kernel%passing(:, lags - last + first:) &
+                  *reshape(hats(n*(first - 1) + 1:n*last), [n, last - first + 1]))
             end do
          end associate
       end if
