@@ -616,11 +616,16 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
     assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize(("head", "said"), [
-    ("rebound [%]", "columns={'resilience': 'rebound [%]'}"), ("rebound", "'resilience': 'rebound'"),
-    ("bounce [mm]", "'drop_height': 'bounce [mm]'"), ("impulse [ms]", "'contact_time': 'impulse [ms]'"),
-    ("contact tyme", "did you mean 'contact_time'?"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        ("rebound [%]", "columns={'resilience': 'rebound [%]'}"),
+        ("rebound", "'resilience': 'rebound'"),
+        ("bounce [mm]", "'drop_height': 'bounce [mm]'"),
+        ("impulse [ms]", "'contact_time': 'impulse [ms]'"),
+        ("contact tyme", "did you mean 'contact_time'?"),
+    ],
+)
 def test_a_column_that_is_not_known_is_guessed_by_its_unit(tmp_path, head, said):
     (tmp_path / "a.csv").write_text(f"{head},velocity [m/s]\n45,1\n50,2\n")
     with pytest.raises(vcor.InputError) as error:
