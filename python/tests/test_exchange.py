@@ -319,9 +319,9 @@ def test_command(tmp_path, capsys):
     ("words", "code", "said"),
     [
         (["--for", "lamps"], 2, "unknown program 'lamps', known: table"),
-        (["--velocities", "1:2"], 2, "expected such as 0.05:5:20"),
-        (["--velocities", "2:1:5"], 2, "expected such as 0.05:5:20"),
-        (["--velocities", "1:inf:5"], 2, "expected such as 0.05:5:20"),
+        (["--velocities", "1:2"], 2, "in m/s, such as 0.05:5:20"),
+        (["--velocities", "2:1:5"], 2, "in m/s, such as 0.05:5:20"),
+        (["--velocities", "1:inf:5"], 2, "in m/s, such as 0.05:5:20"),
         (["--for", "lammps", "--master"], 2, "a master curve is a table"),
     ],
 )
@@ -520,6 +520,23 @@ def test_mixtures_that_are_refused(cases):
     for beads in ([], [RUBBER], [(RUBBER, "large")], 3):
         with pytest.raises(vcor.InputError, match="expected"):
             vcor.mixture(beads)
+    for wall in ((GLASS,), (GLASS, "thick"), 3):
+        with pytest.raises(vcor.InputError, match=r"or \(material, thickness in m\)"):
+            vcor.mixture([(RUBBER, 0.01)], [wall])
+
+
+@pytest.mark.parametrize("mechanics, waves", [("exact", "body"), ("paper", "relaxing")])
+def test_a_wall_has_a_thickness_and_a_bead_has_none(mechanics, waves):
+    contact = {"mechanics": mechanics}
+    beads, wall = vcor.mixture([(GLASS, 0.002)], [(GLASS, 0.005)], contact=contact)
+    same = vcor.mixture([(GLASS, 0.002)], [GLASS], contact=contact, plate={"thickness": 0.005})
+    assert [case.text() for case in same] == [beads.text(), wall.text()]
+    assert beads["plate.waves"] == "none" and beads["plate.thickness"] is None
+    assert beads.solve()["cor"] == pytest.approx(1.0, abs=1e-8)
+    assert wall["plate.waves"] == waves and wall["plate.thickness"] == 0.005
+    assert float(wall.solve()["cor_sphere"]) < 0.99
+    with pytest.raises(vcor.InputError, match=r"pair.nml: found plate.base for two beads"):
+        vcor.pair(GLASS, (0.002, 0.002), plate={"base": "bonded"})
 
 
 def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):

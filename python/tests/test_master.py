@@ -180,6 +180,18 @@ def test_misfits_of_a_broken_master_curve_are_not_noise(tmp_path, capsys):
     capsys.readouterr()
 
 
+def test_a_reference_between_the_data_is_said(tmp_path):
+    path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 10), noise=0.0)
+    with pytest.warns(
+        UserWarning, match="the reference is 20.00 C, where data are, in place of 22 C"
+    ):
+        assert vcor.master(path, reference_temperature=295.15).reference_temperature == 293.15
+    with pytest.raises(
+        vcor.InputError, match=r"298.15 K \(25 C\), .* \(20 C\): take these, or none"
+    ):
+        vcor.master(path, reference_temperature=298.15)
+
+
 def test_a_fit_of_shifts_without_a_law_names_master(tmp_path):
     shifts = {0: 2.0, 10: 0.3, 20: 0.2, 30: -2.0, 40: -2.2, 50: -4.0}
 

@@ -13,16 +13,18 @@ module vcor_words
    !> Shortest name that counts as the beginning of a known one [bytes]
    integer, parameter :: shortest_beginning = 3
 
-   !> A name of keys, columns or options that earlier versions had
+   !> A name of keys, columns or options that there is not: of earlier versions, or of the field
    type :: gone_t
       character(len=20) :: name
       !> What to write instead
       character(len=72) :: advice
    end type gone_t
 
-   !> The names that are gone
+   !> The names of which there is more to say than another name
    type(gone_t), parameter :: gone(*) = [ &
       gone_t('footprint', "waves = 'body' solves the contact itself: remove it"), &
+      gone_t('shore', 'a hardness is not a modulus, vcor help hardness says more'), &
+      gone_t('hardness', 'a hardness is not a modulus, vcor help hardness says more'), &
       gone_t('footprint_effect', "waves = 'body' solves the contact itself: remove it")]
 
    !> A name that the field has for a word of input or output
@@ -45,6 +47,8 @@ module vcor_words
       synonym_t('penetration', 'max_indentation'), &
       synonym_t('deformation', 'max_indentation'), &
       synonym_t('speed', 'velocity'), &
+      synonym_t('glued', 'bonded'), &
+      synonym_t('clamped', 'bonded'), &
       synonym_t('youngs_modulus', 'modulus')]
 
 contains

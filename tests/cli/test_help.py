@@ -144,6 +144,8 @@ def test_words_of_the_output(vcor, word):
         ("shore", "vcor identify"),
         ("rebound", "resilience"),
         ("tan_delta", "peak_loss_tangent"),
+        ("glued", "plate.base"),
+        ("celsius", "296.15 K"),
     ],
 )
 def test_words_of_the_field(vcor, word, says):

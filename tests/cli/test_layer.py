@@ -213,7 +213,7 @@ def test_true_sphere(vcor):
         (
             "model = 'rigid'",
             "model = 'elastic', modulus = 1e7, poisson_ratio = 0.3",
-            ["share in the compliance", "waves = 'body'"],
+            ["model = 'rigid' of the ball", "waves = 'body'"],
         ),
         (
             "&contact law = 'receding' /",

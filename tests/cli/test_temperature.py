@@ -229,7 +229,7 @@ def test_points_without_a_law_have_no_result(vcor):
     "old, new, says",
     [
         (", temperature = 310.0", ", temperature = 0", ["temperature", "> 0 [K]"]),
-        (", temperature = 310.0", ", temperature = -3", ["temperature", "> 0 [K]"]),
+        (", temperature = 310.0", ", temperature = -3", ["temperature", "> 0 [K]; -3.0 C is 270.15 K"]),
         (", temperature = 310.0", ", temperature = 190", ["wlf_c2 = 101.6", "does not hold"]),
         (", temperature = 310.0", ", temperature = 23", ["does not hold; 23.00 C is 296.15 K"]),
         (", reference_temperature = 298.15", "", ["'reference_temperature' is missing", "'sheet'"]),

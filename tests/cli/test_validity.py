@@ -407,8 +407,8 @@ def test_points_without_result(vcor):
 
 SLIPS = [
     ("impact.velocity=2", None),
-    ("impact.drop_height=29", None),
-    ("impact.drop_height=40", "is it in cm or mm?"),
+    ("impact.drop_height=14", None),
+    ("impact.drop_height=30", "is it in cm or mm?"),
     ("impact.velocity=250", None),
     ("impact.velocity=1400", "is it in mm/s?"),
     ("sphere.radius=4", "is it in mm?"),

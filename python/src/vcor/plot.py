@@ -63,6 +63,7 @@ _WORDS = {
     "cor_sphere": "restitution of the sphere alone",
     "min_frequency": "lowest frequency of interest",
     "resilience": "rebound resilience",
+    "rebound_height": "rebound height",
 }
 #: Hatching by what the column validity says, and its text
 _HATCHES = {"outside": ("/////", "outside of the model's validity"),
@@ -731,7 +732,7 @@ def _with_unit(text: str, unit: str) -> str:
 def _name_of(address: str) -> str:
     """A parameter in words."""
     group, _, key = printable(address).replace("_", " ").rpartition(".")
-    return f"{group} {key}"
+    return key if address == "impact.drop_height" else f"{group} {key}"
 
 
 def _labelled(name: str, attrs: Mapping[Any, Any], *values: Any) -> tuple[float, str]:

@@ -191,7 +191,7 @@ def _report(found: Bands) -> str:
     units = [table[one].attrs.get("units", "1") for one in (axis, name)]
     heads = [f"{one} [{unit}]" if unit != "1" else str(one)
              for one, unit in zip((axis, name), units, strict=True)]  # fmt: skip
-    lines = [f"{heads[0]:>26s}{heads[1]:>16s}{'numerical':>11s}{'material':>11s}{'model':>11s}"
+    lines = [f"{heads[0]:>26s} {heads[1]:>15s}{'numerical':>11s}{'material':>11s}{'model':>11s}"
              f"  {'95 % of the samples':26s}validity"]  # fmt: skip
     chosen = np.unique(np.linspace(0, len(found.points) - 1, ROWS).round().astype(int))
     for i in chosen:

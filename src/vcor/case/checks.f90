@@ -53,7 +53,7 @@ module vcor_case_checks
    type(limits_t), parameter :: limits(*) = [ &
       limits_t('impact', 'temperature', 'K', coldest, endless, celsius, ''), &
       limits_t('impact', 'velocity', 'm/s', -endless, 300.0_wp, '', 'is it in mm/s?'), &
-      limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
+      limits_t('impact', 'drop_height', 'm', -endless, 15.0_wp, '', 'is it in cm or mm?'), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
       limits_t('sphere', 'diameter', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('sphere', 'punch_radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
@@ -90,7 +90,9 @@ contains
       do group = 1, size(groups)
          if (groups(group)%required .and. self%count(groups(group)%name) == 0) then
             call raise(error, error_input, printable(self%source)//': there is no &' &
-               //trim(groups(group)%name)//' group, expected '//described(group))
+               //trim(groups(group)%name)//' group, expected '//described(group) &
+               //trim(merge(', or files of materials after the case', repeat(' ', 38), &
+               groups(group)%name == 'material')))
             return
          end if
       end do
@@ -504,7 +506,7 @@ contains
       own = 0
       associate (key => catalogue(row))
          yes = key_row(row) == row .and. any(key%value_kind == [real_key, list_key]) &
-            .and. (limit%key == '' .or. limit%key == key%name)
+            .and. (limit%key == '' .and. index(key%name, 'valid_') /= 1 .or. limit%key == key%name)
          if (yes) own = row_for_model(row, model)
       end associate
       if (own > 0) yes = catalogue(own)%unit == limit%unit

@@ -91,7 +91,7 @@ module vcor_case_choices
          //'relaxation modulus of both bodies, and F an integral over the past: see ' &
          //'contact.law. sphere.shape has other bodies, plate.base layers, and the column ' &
          //'contact_ratio says how far the contact is from small.'), &
-      topic_t(' layer pad mat coating sheet film ', &
+      topic_t(' layer pad mat coating sheet film glued clamped ', &
          "A layer on a rigid floor: plate.base = 'bonded' or 'sliding' with thickness. A " &
          //"plate with nothing behind it bends: plate.waves = 'body'. Columns layer_ratio, " &
          //'layer_stiffening.'), &
@@ -104,7 +104,11 @@ module vcor_case_choices
       topic_t(' hardness shore durometer ', &
          'A hardness is not a modulus of an impact: it is read after seconds, while a contact of ' &
          //'a millisecond meets a stiffer material that loses more. Give moduli from DMA (vcor ' &
-         //'fit, vcor master), or find them from measured impacts (vcor identify).'), &
+         //'fit, vcor master), or find them from measured impacts (vcor identify); ' &
+         //'docs/materials.md has a table of what a hardness tells.'), &
+      topic_t(' celsius fahrenheit ', &
+         'Temperatures of a case are in K: 23 C is 296.15 K. Data may have C, and options such ' &
+         //'as --reference 23C of vcor master; --celsius of vcor plot draws C.'), &
       topic_t(' rebound bounce restitution ', &
          'Velocity after the impact over that before: column cor_sphere, that of the sphere, as ' &
          //'a drop test reads it; cor, that between both bodies. resilience is cor_sphere^2, the ' &

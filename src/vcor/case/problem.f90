@@ -617,9 +617,9 @@ contains
          plate = self%plate%material%glassy()*self%plate%material%plane_strain_factor()
          layer%share = sphere/(sphere + plate)
       else
-         call raise(error, error_input, "the layer's share in the compliance must not change " &
-            //'with time: expected one rigid body, two elastic ones or two of one material, ' &
-            //"or waves = 'body'", about='base material')
+         call raise(error, error_input, 'of a layer that relaxes and a ball that deforms too, ' &
+            //"expected model = 'rigid' of the ball, if it is by far the stiffer one, or one " &
+            //"material of both, or waves = 'body'", about='base material')
       end if
    end subroutine describe_layer
 

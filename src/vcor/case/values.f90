@@ -317,6 +317,9 @@ contains
       if (message == '') return
       message = 'found '//message//', expected '//wanted(key)
       if (key%value_kind == real_key) then
+         if (key%unit == 'K' .and. entry%number > -273.15_wp) message = message//'; ' &
+            //real_text(entry%number)//' C is ' &
+            //real_text(anint(100.0_wp*entry%number + 27315.0_wp)/100.0_wp)//' K'
          if (.not. is_computable(entry%number)) message = message//', between 1e-60 and 1e60 in ' &
             //'magnitude: beyond that nothing can be computed'
       else if (key%choices /= '' .and. len_trim(entry%text) > 1) then

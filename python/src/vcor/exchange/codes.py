@@ -145,6 +145,10 @@ def pair(
     return pair_of(both, radii, velocity, masses, groups, "pair.nml")
 
 
+#: Keys of &plate that only a wall has
+OF_WALLS = ("thickness", "half_thickness", "waves", "base", "extent")
+
+
 def pair_of(
     both: Sequence[Mapping[str, Any]],
     radii: ArrayLike,
@@ -182,8 +186,16 @@ def pair_of(
         "sphere": {"radius": first, "mass": reduced, "material": both[0]["name"]},
         "plate": {"material": both[1]["name"], "waves": "none"},
     }
+    plate = groups.get("plate")
+    of_wall = [key for key in (plate if isinstance(plate, Mapping) else ()) if key in OF_WALLS]
     if second < math.inf:
+        if of_wall:
+            raise InputError(f"{title}: found plate.{of_wall[0]} for two beads, which only a wall "
+                             "has")  # fmt: skip
         given["plate"]["surface_radius"] = second
+    elif of_wall:
+        # what the case says of waves, or their default
+        del given["plate"]["waves"]
     for name, keys in groups.items():
         # what is no group is refused by Case
         given[name] = (
@@ -196,7 +208,8 @@ def checked(target: str, velocities: ArrayLike, quantity: str) -> Floats:
     """The velocities; refused with what there is not."""
     given = numbers(velocities, "velocities")
     if target not in list(TARGETS):
-        raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}")
+        raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}"
+                         f"{_text.near(str(target), TARGETS)}")  # fmt: skip
     if quantity not in MEANING:
         raise UsageError(f"unknown quantity '{quantity}', known: {', '.join(MEANING)}")
     if given.size < 2 or not (np.diff(given, prepend=0) > 0).all():

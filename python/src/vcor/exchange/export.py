@@ -110,7 +110,8 @@ def _work(options: argparse.Namespace) -> None:
         velocities = np.geomspace(float(low), float(high), int(count))
     except ValueError:
         raise UsageError(
-            f"--velocities {options.velocities}: expected such as 0.05:5:20, from small to large"
+            f"--velocities {options.velocities}: expected A:B:N, N velocities from A up to B in "
+            "m/s, such as 0.05:5:20"
         ) from None
     found = export(read_cases(options.case), options.target, velocities, quantity=options.quantity,
                    master=options.master, law=options.law, threads=options.threads)  # fmt: skip

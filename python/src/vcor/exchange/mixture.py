@@ -25,6 +25,7 @@ from .._library import Floats, InputError, NumericalError, UsageError, whole
 from ..case import Case, number
 from .codes import (
     MEANING,
+    OF_WALLS,
     RUNS,
     STEPS,
     TARGETS,
@@ -103,7 +104,7 @@ class Mixture:
 
 def mixture(
     beads: Sequence[tuple[Mapping[str, Any], float]],
-    walls: Sequence[Mapping[str, Any]] = (),
+    walls: Sequence[Mapping[str, Any] | tuple[Mapping[str, Any], float]] = (),
     **groups: Mapping[str, Any],
 ) -> list[Case]:
     """Cases of all pairs of a mixture, for `export`.
@@ -113,9 +114,10 @@ def mixture(
     beads
         Keys of the group &material and radius [m] of each type of beads.
     walls
-        Keys of the group &material of each wall.
+        Keys of the group &material of each wall, or these and its thickness [m].
     groups
-        More of the cases by the names of their groups, as for `pair`.
+        More of the cases by the names of their groups, as for `pair`; thickness, base and waves of
+        `plate` are those of all walls.
 
     Returns
     -------
@@ -124,19 +126,26 @@ def mixture(
     """
     try:
         known = [(dict(material), float(radius)) for material, radius in beads]
-        flat = [(dict(material), math.inf) for material in walls]
-    except (TypeError, ValueError):
+        pairs = [(one, {}) if isinstance(one, Mapping) else (one[0], {"thickness": float(one[1])})
+                 for one in walls]  # fmt: skip
+        flat = [(dict(material), math.inf) for material, _ in pairs]
+        plate = dict(groups.get("plate", {}))
+    except (TypeError, ValueError, IndexError, KeyError):
         raise InputError("expected beads such as (material, radius in m), and walls such as "
-                         "material, each material by the keys of its group") from None  # fmt: skip
+                         "material or (material, thickness in m), each material by the keys of its "
+                         "group") from None  # fmt: skip
     if not known:
         raise InputError("expected one type of beads or more")
     bodies = list(enumerate([*known, *flat], 1))
     couples = [two for two in itertools.combinations_with_replacement(bodies, 2)
                if two[0][0] <= len(known)]  # fmt: skip
+    of_beads = {key: value for key, value in plate.items() if key not in OF_WALLS}
+    plates = [*[of_beads] * len(known), *(plate | own for _, own in pairs)]
     return [
-        pair_of([one, other], (radius, second), 1.0, None, groups, f"pair_{i}-{j}")
+        pair_of([one, other], (radius, second), 1.0, None, {**groups, "plate": plates[j - 1]},
+                f"pair_{i}-{j}")
         for (i, (one, radius)), (j, (other, second)) in couples
-    ]
+    ]  # fmt: skip
 
 
 def export_mixture(

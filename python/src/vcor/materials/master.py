@@ -272,8 +272,17 @@ def of_curves(
         if abs(temperatures[middle] - reference_temperature) > 3:
             slip = "; a temperature in degrees Celsius ends in C, as 25C"
             slip = slip if reference_temperature < COLDEST else ""
-            raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, the "
-                             f"nearest are at {temperatures[middle]:.2f} K{slip}")  # fmt: skip
+            raise InputError(
+                f"there are no data within 3 K of {reference_temperature:g} K "
+                f"({reference_temperature - ZERO_C:.4g} C), the nearest are at "
+                f"{temperatures[middle]:.2f} K ({temperatures[middle] - ZERO_C:.4g} C): take "
+                f"these, or none, as impact.temperature shifts to any temperature{slip}"
+            )
+        if abs(temperatures[middle] - reference_temperature) > SAME / 2:
+            warnings.warn(
+                f"{source}: the reference is {temperatures[middle] - ZERO_C:.2f} C, where data "
+                f"are, in place of {reference_temperature - ZERO_C:.4g} C", stacklevel=2,
+            )  # fmt: skip
     with one_thread():
         found, vertical = steps_of(curves, vertical_shift)
     if apart := tuple(one.apart for one in found if one.apart):
