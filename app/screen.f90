@@ -22,18 +22,19 @@ module vcor_app_screen
    !> Name of a group of quantities, and the quantities
    type :: block_t
       character(len=24) :: title
-      character(len=20) :: names(6) = ''
+      character(len=20) :: names(7) = ''
    end type block_t
    !> The table of an impact, and of a sweep
    type(block_t), parameter :: blocks(*) = [ &
       block_t('restitution', [character(len=20) :: 'cor_sphere', 'cor', 'resilience', &
-      'rebound_height', '', '']), &
+      'rebound_height', '', '', '']), &
       block_t('motion', [character(len=20) :: 'contact_time', 'max_indentation', &
-      'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio']), &
+      'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio', &
+      'layer_strain']), &
       block_t('force', [character(len=20) :: 'max_force', 'mean_pressure', 'layer_stiffening', &
-      '', '', '']), &
+      '', '', '', '']), &
       block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', 'loss_tangent', &
-      'min_frequency', 'inelasticity', '', ''])]
+      'min_frequency', 'inelasticity', '', '', ''])]
 
 contains
 

@@ -38,7 +38,7 @@ module vcor_app_validity
       'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
       'energy_loss', 'energy_imbalance', 'contact_ratio', 'thickness_ratio', &
       'plate_wave_number', 'needed_extent', 'deflection_ratio', 'weight_ratio', &
-      'mean_pressure', 'half_space_loss', 'bending_loss']
+      'mean_pressure', 'half_space_loss', 'bending_loss', 'layer_strain']
 
 contains
 
@@ -180,6 +180,9 @@ contains
             case ('thickness_ratio')
                words = "thin for this contact: a free plate is softer, compare waves = 'body'; " &
                   //'on a floor give plate.base'
+            case ('layer_strain')
+               words = 'the indentation is '//percent(value)//' of the thickness, deep for small ' &
+                  //'strains: the force is too small; take a slower impact or a thicker layer'
             case ('plate_wave_number')
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"
@@ -337,6 +340,7 @@ contains
       outcome%mean_pressure = summary%values(places(15))%reals(point)
       outcome%half_space_loss = summary%values(places(16))%reals(point)
       outcome%bending_loss = summary%values(places(17))%reals(point)
+      outcome%layer_strain = summary%values(places(18))%reals(point)
    end function outcome_at
 
    !> Restitution of the sphere with exact mechanics at the first and the last point with a result,
@@ -662,7 +666,7 @@ contains
                text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
                   //significant(cor, 5, 0)//' to ' &
                   //significant(cor + found%held - found%cor, 5, 0) &
-                  //', a lower bound of the doubt'
+                  //': so much rests on the extrapolation of the fit'
             else
                text = text//'it has no result'
             end if

@@ -43,6 +43,7 @@ NAMES = [
     "thickness_ratio",
     "layer_ratio",
     "layer_stiffening",
+    "layer_strain",
     "plate_wave_number",
     "needed_extent",
     "deflection_ratio",

@@ -106,6 +106,7 @@ def test_pad(vcor):
     assert found["residual_indentation"] == pytest.approx(0.00044261088208, rel=NEAR)
     assert found["layer_ratio"] == pytest.approx(0.006416918627 / 0.0125, rel=NEAR)
     assert found["layer_stiffening"] == pytest.approx(1.889, abs=0.001)
+    assert found["layer_strain"] == pytest.approx(found["max_indentation"] / 0.0125, rel=1e-12)
     # a layer on a floor neither bends nor radiates as a half space, and its law contains its thickness
     for name in (
         "half_space_loss",
@@ -130,6 +131,26 @@ def test_elastic(vcor):
         found = vcor.numbers("case.nml", "--set", f"contact.law={law}")
         assert float(found["cor"]) == pytest.approx(1.0, abs=CLOSE)
         assert float(found["contact_time"]) == pytest.approx(0.010175643297, rel=NEAR)
+
+
+@pytest.mark.parametrize("waves", ["none", "body"])
+def test_strain_is_judged(vcor, waves):
+    """Deep in the layer strains are not small, whatever the mechanics."""
+    vcor.write(PAD)
+    for velocity, thickness, level in (
+        (0.05, 0.0125, "good"),
+        (1.0, 0.0125, "caution"),
+        (0.9, 0.005, "outside"),
+    ):
+        words = ("--set", f"plate.waves={waves}", "--set", "sphere.shape=true_sphere")
+        words += ("--set", f"impact.velocity={velocity}", "--set", f"plate.thickness={thickness}")
+        found = vcor.numbers("case.nml", *words)
+        strain = float(found["layer_strain"])
+        assert level == ("good" if strain < 0.1 else "caution" if strain < 0.3 else "outside")
+        if level == "good":
+            assert found["validity_cause"] != "layer_strain"
+        else:
+            assert (found["validity"], found["validity_cause"]) == (level, "layer_strain")
 
 
 def test_thick_layer(vcor):

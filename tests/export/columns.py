@@ -27,6 +27,7 @@ SUMMARY = {
     "thickness_ratio": "1",
     "layer_ratio": "1",
     "layer_stiffening": "1",
+    "layer_strain": "1",
     "plate_wave_number": "1",
     "needed_extent": "m",
     "deflection_ratio": "1",

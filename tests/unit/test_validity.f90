@@ -78,23 +78,25 @@ contains
       case (2)
          outcome%thickness_ratio = value
       case (3)
-         outcome%plate_wave_number = value
+         outcome%layer_strain = value
       case (4)
+         outcome%plate_wave_number = value
+      case (5)
          around%extent = scale
          outcome%needed_extent = scale*value
-      case (5)
-         outcome%deflection_ratio = value
       case (6)
-         outcome%weight_ratio = value
+         outcome%deflection_ratio = value
       case (7)
+         outcome%weight_ratio = value
+      case (8)
          around%yield_strength = scale
          outcome%mean_pressure = scale*value
-      case (8)
+      case (9)
          ! what is computed as waves is not lost
          outcome%initial_energy = scale
          outcome%wave_energy = scale*0.25_wp
          outcome%half_space_loss = 0.25_wp + value
-      case (9)
+      case (10)
          ! a plate is either thick or bends
          outcome%initial_energy = scale
          outcome%wave_energy = 0.0_wp

@@ -47,6 +47,10 @@ module vcor_impact_validity
       ! ratio of the forces on a layer and on a half space, same indentation (`layer_law`): sliding
       ! 1.079 at 0.1 and 1.264 at 0.3, bonded with nu = 0.5 1.124 and 1.440; a free plate is softer
       threshold_t('thickness_ratio', 0.1_wp, 0.3_wp), &
+      ! the gap between sphere and base is smaller by half the indentation on average, and the
+      ! stiffness of a thin incompressible layer goes with its third power: the force is up to 15 %
+      ! too small at 0.1, 50 % at 0.3, times the share that the base adds to it
+      threshold_t('layer_strain', 0.1_wp, 0.3_wp), &
       ! Rayleigh and Lamb's layer takes 8 % more energy than a thin plate at 0.7, a third more at
       ! 1.3
       threshold_t('plate_wave_number', 0.7_wp, 1.3_wp), &
@@ -161,6 +165,7 @@ contains
       outcome%thickness_ratio = outcome%contact_radius/around%thickness*share
       if (around%on_base) then
          outcome%layer_ratio = outcome%contact_radius/around%thickness
+         outcome%layer_strain = outcome%max_indentation/around%thickness*share
          ! with its waves the layer has no static law
          if (impact%law%is_of_layer()) &
             outcome%layer_stiffening = impact%law%stiffening(outcome%max_indentation)
@@ -275,9 +280,9 @@ contains
       end if
 
       values = [merge(none, outcome%contact_ratio, around%is_true), &
-         merge(none, outcome%thickness_ratio, around%on_base), outcome%plate_wave_number, &
-         outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
-         outcome%mean_pressure/around%yield_strength, &
+         merge(none, outcome%thickness_ratio, around%on_base), outcome%layer_strain, &
+         outcome%plate_wave_number, outcome%needed_extent/around%extent, &
+         outcome%deflection_ratio, outcome%weight_ratio, outcome%mean_pressure/around%yield_strength, &
          thick, bends, merge(huge(thick), none, outcome%gains_energy())]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
       do i = 1, size(thresholds)
