@@ -342,6 +342,23 @@ def test_a_stopwatch(tmp_path):
     assert np.allclose(only.bounce_time, [0.5, 0.4, 0.3])
 
 
+@pytest.mark.parametrize(("cells", "unit", "digits"), [
+    (["0.80", "0.70"], 0.01, 2), (["1.0", "1.0"], 0.1, 2), (["0,5", "0,4837"], 1e-4, 4),
+    (["1", "0.5"], 0.1, 1), (["1.50e-1", "2.5e-1"], 1e-3, 3),
+])  # fmt: skip
+def test_digits_as_they_are_written(tmp_path, cells, unit, digits):
+    text = "v [m/s];cor\n" + "".join(f"{i + 1};{cell}\n" for i, cell in enumerate(cells))
+    found = read(tmp_path, text).attrs["digits"]["cor"]
+    assert found == (pytest.approx(unit), digits)
+
+
+def test_digits_of_whole_numbers_and_percent(tmp_path):
+    data = read(tmp_path, "v [m/s];resilience [%];max force [N]\n1;80;1500\n2;75;1200\n")
+    assert data.attrs["digits"]["resilience"] == (pytest.approx(0.01), 2)
+    # zeros at the end of a whole number may be none that was measured
+    assert data.attrs["digits"]["max_force"] == (pytest.approx(100), 2)
+
+
 def test_a_diameter_is_two_radii(tmp_path):
     head = "v [m/s],{} [mm],cor\n"
     for name in ("ball diameter", "Kugeldurchmesser", "diamètre de la bille", "直径"):

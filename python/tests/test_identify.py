@@ -416,7 +416,7 @@ LAB = {
 def test_tables_of_laboratories(tmp_path, name):
     path = tmp_path / "drops.csv"
     path.write_text(LAB[name], encoding="utf-8")
-    found, _ = read_columns(path, guess("sls"))
+    found, *_ = read_columns(path, guess("sls"))
     assert np.allclose(found["drop_height"], [0.4, 0.8])
     assert np.allclose(found["rebound_height"], [0.2, 0.39]) and len(found) == 2
 

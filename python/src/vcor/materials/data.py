@@ -61,8 +61,8 @@ def read_data(
     pandas.DataFrame
         A row for each point, with its line in the file as index. `attrs` has `kind` (dynamic,
         relaxation, shift, record or impacts), `taken`, a line that says what was taken for what,
-        `shear`, whether moduli are shear moduli (None: not stated), `units`, `names`, `remarks`
-        and `path`.
+        `shear`, whether moduli are shear moduli (None: not stated), `units`, `names`, `remarks`,
+        `path`, and `digits`, the unit of the last digit of a column and its significant digits.
     """
     import pandas as pd
 
@@ -82,6 +82,7 @@ def read_data(
         "names": names,
         "units": {key: reader.units.get(key, "") for key in frame},
         "remarks": grid.remarks,
+        "digits": reader.digits,
     }
     frame.attrs["taken"] = reader.taken(frame)
     return frame
@@ -172,11 +173,13 @@ def tensile(
             f"{data.attrs['path']}: found shear moduli, expected {option('poisson_ratio')}, by "
             "which they become tensile ones"
         )
-    found = data.copy()
+    found, digits = data.copy(), dict(data.attrs["digits"])
     for key in found:
         if str(key).removesuffix("_sigma").endswith("_modulus"):
             found[key] *= 2 * (1 + poisson_ratio)
-    found.attrs = {**data.attrs, "shear": False}
+            if key in digits:
+                digits[key] = 2 * (1 + poisson_ratio) * digits[key][0], digits[key][1]
+    found.attrs = {**data.attrs, "shear": False, "digits": digits}
     return found
 
 

@@ -89,6 +89,18 @@ def number(cell: str) -> float:
     return float(text) if _NUMBER.fullmatch(cell) else math.nan
 
 
+def digits_of(cell: str) -> tuple[float, int]:
+    """Unit of the last digit of a number, and its significant digits.
+
+    Zeros at the end count only after a decimal mark.
+    """
+    mantissa, _, power = re.sub("[dD]", "e", cell.lower().replace("−", "-")).partition("e")
+    whole, mark, decimals = re.sub(r"[-+]", "", mantissa).replace(",", ".").partition(".")
+    last = len(decimals) if mark else len(whole.rstrip("0")) - len(whole)
+    digits = (whole + decimals if mark else whole.rstrip("0")).lstrip("0")
+    return 10.0 ** (int(power or 0) - last), len(digits)
+
+
 def resolution(cell: str) -> float:
     """Half a unit of the last digit of a number."""
     mantissa, _, power = re.sub("[dD]", "e", cell.lower().replace("−", "-")).partition("e")

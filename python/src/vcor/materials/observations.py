@@ -31,6 +31,10 @@ class File:
     units: Units = None
 
 
+#: By column: the unit of its last digit, and its most significant digits; of arrays none is known
+Written = Mapping[str, tuple[float, int]]
+NO_DIGITS: Written = {}
+
 Source = str | os.PathLike[str] | File | Mapping[str, ArrayLike]
 
 #: Standard gravity [m/s2]
@@ -58,9 +62,11 @@ class Impacts:
     unknowns = 0
     taken = ""
 
-    def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
+    def __init__(
+        self, source: str, columns: Mapping[str, Floats], case: Case, written: Written = NO_DIGITS
+    ) -> None:
         self.source = source
-        columns, digits = _as_velocities(source, dict(columns), case)
+        columns, digits = _as_velocities(source, dict(columns), case, written)
         self.settings: dict[str, Floats] = {}
         parts = []
         known = _library.columns(0)
@@ -86,7 +92,7 @@ class Impacts:
                 continue
             rows = np.flatnonzero(np.isfinite(column))
             if rows.size:
-                digit = digits.get(name, last_digit(column))
+                digit = digits.get(name, last_digit(column, written.get(name)))
                 parts.append((name, rows, column[rows], _sigma(columns, name)[rows], digit[rows]))
         if not parts:
             raise InputError(f"{source}: there is no measured quantity, such as cor, in this file")
@@ -197,7 +203,9 @@ class Record:
     unknowns = 2
     taken = ""
 
-    def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
+    def __init__(
+        self, source: str, columns: Mapping[str, Floats], case: Case, written: Written = NO_DIGITS
+    ) -> None:
         self.source = source
         self.settings = {
             address: float(columns[name][0])
@@ -223,7 +231,7 @@ class Record:
         self.sigma = factor * _sigma(columns, name)[good]
         largest = float(np.max(self.value)) - (-zero if self.turned else zero)
         self.scale = np.full(len(self.at), largest)
-        self.digit = factor * last_digit(columns[name])[good]
+        self.digit = factor * last_digit(columns[name], written.get(name))[good]
         self.place = [(t,) for t in self.at.tolist()]
         kelvin = self.settings.get("impact.temperature", math.nan)
         self.temperature = np.full(len(self.at), kelvin)
@@ -300,8 +308,9 @@ class Moduli:
     taken = ""
 
     def __init__(
-        self, source: str, columns: Mapping[str, Floats], material: str, case: Case
-    ) -> None:
+        self, source: str, columns: Mapping[str, Floats], material: str, case: Case,
+        written: Written = NO_DIGITS,
+    ) -> None:  # fmt: skip
         self.source, self.material = source, material
         self.dynamic = "frequency" in columns
         names = ["storage_modulus", "loss_modulus"] if self.dynamic else ["relaxation_modulus"]
@@ -315,7 +324,9 @@ class Moduli:
         self.value = np.concatenate([columns[name] for name in names])
         self.sigma = np.concatenate([_sigma(columns, name) for name in names])
         self.scale = np.abs(self.value)
-        self.digit = np.concatenate([last_digit(columns[name]) for name in names])
+        self.digit = np.concatenate(
+            [last_digit(columns[name], written.get(name)) for name in names]
+        )
         at = columns.get("temperature", np.full(len(self.points), np.nan))
         if case[f"{material}.shift"] is None and np.ptp(at) < SAME_TEMPERATURE:
             at = np.full(len(at), np.nan)
@@ -392,11 +403,12 @@ def window(blocks: Sequence[Block], case: Case, material: str) -> tuple[float, f
     return float(rows[:, 0].min()), float(rows[:, 1].max())
 
 
-def last_digit(values: Floats) -> Floats:
+def last_digit(values: Floats, written: tuple[float, int] | None = None) -> Floats:
     """Unit of the last digit of each number of a column, shape (n,); nan where there is none.
 
     The column has a number of decimals, or one of significant digits: what a number lacks of them
-    are zeros. Units turn the last ones of 16 digits, so 14 are looked at.
+    are zeros. Units turn the last ones of 16 digits, so 14 are looked at, unless it is known how
+    the column is written: the unit of its last digit, and its most significant digits.
     """
     unit = np.full(len(values), np.nan)
     good = np.flatnonzero(np.isfinite(values) & (values != 0))
@@ -404,14 +416,16 @@ def last_digit(values: Floats) -> Floats:
         texts = [f"{abs(value):.13e}".split("e") for value in values[good]]
         digits = np.array([len(mantissa.replace(".", "").rstrip("0")) for mantissa, _ in texts])
         power = np.array([float(exponent) for _, exponent in texts])
-        last = float((power - digits).min()) + 1
-        unit[good] = 10 ** np.maximum(last, power - digits.max() + 1)
+        last, most = float((power - digits).min()) + 1, digits.max()
+        if written:
+            last, most = math.log10(written[0]), written[1]
+        unit[good] = 10 ** np.maximum(last, power - most + 1)
         unit[values == 0] = 10**last
     return unit
 
 
 def _as_velocities(
-    source: str, columns: dict[str, Floats], case: Case
+    source: str, columns: dict[str, Floats], case: Case, written: Written
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Heights and times in flight as velocities and coefficients of restitution.
 
@@ -465,7 +479,8 @@ def _as_velocities(
         n = len(ratio)
         columns = {name: column[:n] for name, column in columns.items()}
         columns["velocity"] = speed[:-1]
-        last = np.concatenate([np.zeros(len(drop[:1])), gravity * last_digit(times) / 2])
+        known = written.get("bounce_time")
+        last = np.concatenate([np.zeros(len(drop[:1])), gravity * last_digit(times, known) / 2])
         sigma, digit = (
             ratio * np.hypot(part[1:] / speed[1:], part[:-1] / speed[:-1]) for part in (error, last)
         )
@@ -478,20 +493,21 @@ def _as_velocities(
         rebound = np.abs(rebound)
         own = np.array(velocity_of(case))
         ratio = rebound / columns.get("velocity", own)
-        digit = ratio * last_digit(rebound) / rebound
+        digit = ratio * last_digit(rebound, written.get("rebound_velocity")) / rebound
         put("cor_sphere", ratio, ratio * sigma / rebound, digit)
     if "rebound_height" in columns:
         height, sigma = take("rebound_height")
         speed = columns.get("velocity", np.array(velocity_of(case)))
         ratio = np.sqrt(2 * gravity * height) / speed
-        sigma, digit = (ratio * part / height / 2 for part in (sigma, last_digit(height)))
+        last = last_digit(height, written.get("rebound_height"))
+        sigma, digit = (ratio * part / height / 2 for part in (sigma, last))
         put("cor_sphere", ratio, sigma, digit)
     return columns, digits
 
 
 def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     """Data of a file or of columns, by what they are."""
-    materials, taken = materials_of(free), ""
+    materials, taken, written = materials_of(free), "", NO_DIGITS
     if isinstance(source, Mapping):
         name = "data"
         columns = arrays(source)
@@ -500,7 +516,7 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     else:
         file = source if isinstance(source, File) else File(source)
         name = os.fspath(file.path)
-        columns, taken = read_columns(file.path, case, materials, file.columns, file.units)
+        columns, taken, written = read_columns(file.path, case, materials, file.columns, file.units)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
@@ -509,14 +525,14 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
                              f"a finite one{' > 0' * key.endswith('_sigma')}")  # fmt: skip
     block: Block
     if "time" in columns and ("force" in columns or "acceleration" in columns):
-        block = Record(name, columns, case)
+        block = Record(name, columns, case, written)
     elif any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
-        block = Moduli(name, columns, materials[0], case.copy())
+        block = Moduli(name, columns, materials[0], case.copy(), written)
     else:
-        block = Impacts(name, columns, case)
+        block = Impacts(name, columns, case, written)
     block.taken = taken
     return block
 
@@ -527,8 +543,8 @@ def read_columns(
     materials: Sequence[str] = (),
     columns: Columns = None,
     units: Units = None,
-) -> tuple[dict[str, Floats], str]:
-    """Columns of a file, and what was taken; moduli by the ratio of the first material."""
+) -> tuple[dict[str, Floats], str, Written]:
+    """Columns of a file, what was taken, and digits; moduli by the ratio of the first material."""
 
     def unit_of(address: str) -> str:
         """SI unit of the value at an address."""
@@ -537,11 +553,12 @@ def read_columns(
     data = read_data(path, columns, units, unit_of=unit_of)
     if data.attrs["kind"] in ("dynamic", "relaxation"):
         ratios = [number(case, f"{name}.poisson_ratio") for name in materials]
-        parts = curves(tensile(data, ratios[0] if ratios else None))
+        data = tensile(data, ratios[0] if ratios else None)
+        parts = curves(data)
         for part in parts:
             part["temperature"] = part.attrs["temperature"]
-        return _arrays(pd.concat(parts)), data.attrs["taken"]
-    return _arrays(data), data.attrs["taken"]
+        return _arrays(pd.concat(parts)), data.attrs["taken"], data.attrs["digits"]
+    return _arrays(data), data.attrs["taken"], data.attrs["digits"]
 
 
 def _arrays(data: pd.DataFrame) -> dict[str, Floats]:

@@ -11,7 +11,15 @@ import numpy as np
 
 from .._library import Floats, InputError, UsageError, printable
 from .._text import near, option
-from .grid import Grid, Row, has_thousands, is_missing, is_number, number
+from .grid import (
+    Grid,
+    Row,
+    digits_of,
+    has_thousands,
+    is_missing,
+    is_number,
+    number,
+)
 from .names import ASIDE, QUANTITIES, Head, is_address, plain
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
 from .units import examples, plain_unit, quantities_of, size
@@ -64,6 +72,8 @@ class Reader:
         self.path, self.grid, self.choice, self.unit_of = grid.path, grid, choice, unit_of
         self.names: dict[str, str] = {}
         self.units: dict[str, str] = {}
+        #: By column: the unit of its last digit in SI units, and its most significant digits
+        self.digits: dict[str, tuple[float, int]] = {}
         self.left: list[str] = []
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
@@ -294,6 +304,13 @@ class Reader:
                 "decimal points, or semicolons between the columns"
             )
         self.comma |= commas > 0
+        told = [digits_of(cell) for row in rows if is_number(cell := column.cell(row))]
+        told = [one for one in told if one[1]]
+        # a spreadsheet has numbers, not their digits
+        if told and not column.head.base and self.grid.separator != "xlsx":
+            units, counts = zip(*told, strict=True)
+            before = self.digits.get(name, (math.inf, 0))
+            self.digits[name] = min(factor * min(units), before[0]), max(*counts, before[1])
         if column.head.base:
             if column.head.sigma:
                 raise InputError(
