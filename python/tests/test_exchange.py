@@ -539,6 +539,24 @@ def test_a_wall_has_a_thickness_and_a_bead_has_none(mechanics, waves):
         vcor.pair(GLASS, (0.002, 0.002), plate={"base": "bonded"})
 
 
+def test_a_figure_of_a_mixture_tells_its_pairs_apart(cases):
+    """A panel for the pairs with each material; no two of them look the same."""
+    found = vcor.export(cases, "lammps", VELOCITIES)
+    assert any("misfit in e by pair: 1-1 " in line for line in found.header)
+    assert any("no yield_strength of rubber" in line for line in found.header)
+    made = found.figure()
+    assert len(made.axes) == 3
+    names = []
+    for axis in made.axes:
+        lines = [line for line in axis.lines if line.get_label()[0] != "_"]
+        *pairs, law = lines
+        assert law.get_label() == "law for lammps"
+        looks = {(one.get_color(), str(one.get_linestyle()), one.get_marker()) for one in pairs}
+        assert len(looks) == len(pairs)
+        names += [one.get_label() for one in pairs]
+    assert len(names) == 9 and "1-4: rubber 3 mm, wall of glass" in names
+
+
 def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
     """Files of materials complete all cases before them, as those of vcor run."""
     monkeypatch.chdir(tmp_path)
@@ -555,8 +573,8 @@ def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
         capsys.readouterr().out
     )
     export.main(["wall.nml", "beads.nml", "rubber.nml", "glass.nml", *tail, "--output", "out"])
-    assert {path.name for path in Path("out").iterdir()} == {"wall_lammps.in", "wall_lammps.svg"}
-    assert "pair_coeff  1 1" in Path("out/wall_lammps.in").read_text()
+    assert {path.name for path in Path("out").iterdir()} == {"mixture_lammps.in", "mixture_lammps.svg"}
+    assert "pair_coeff  1 1" in Path("out/mixture_lammps.in").read_text()
     capsys.readouterr()
     with pytest.raises(SystemExit) as caught:
         export.main(["glass.nml", "wall.nml", *tail])

@@ -266,7 +266,8 @@ contains
       call check_relative(law%radius(hertz(), depth), a, accuracy, "its contact radius")
       call check_relative(law%stiffening(depth(3)), 1.0_wp, accuracy, "a half space is not a layer")
       call check_relative(law%profile(hertz(), a), depth, accuracy, "its profile")
-      call check(law%profile(hertz(), radius) > 18.0_wp*radius, "there is nothing beyond its radius")
+      call check(law%profile(hertz(), radius) > 18.0_wp*radius, &
+         "there is nothing beyond its radius")
       call check(radius < law%deepest() .and. law%deepest() < 1.2_wp*radius, &
          "it may be as deep as its radius")
       high = 2.0_wp*radius

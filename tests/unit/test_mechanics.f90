@@ -345,8 +345,8 @@ contains
       call compare(cerf, "CERF")
    end subroutine test_fractional
 
-   !> A receding contact of power laws that are nearly dashpots, whose fast modes amplify rounding errors
-   !> of the indentation at the end
+   !> A receding contact of power laws that are nearly dashpots, whose fast modes amplify rounding
+   !> errors of the indentation at the end
    subroutine test_nearly_fluid()
       real(wp), parameter :: exponent(6) = [0.85_wp, 0.92_wp, 0.94_wp, 0.97_wp, 0.98_wp, 0.995_wp]
       ! what ive is to be as accurate as, and product integration, its steps halved, at 1 us

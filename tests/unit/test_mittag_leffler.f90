@@ -191,7 +191,8 @@ contains
          if (.not. allocated(material)) cycle
          call check_relative(material%relaxation(time), sls%relaxation(time), &
             rounding + below(i), "just below exponent 1 E is that of the SLS")
-         ! compared with exp(-10) = 5e-5 the power law of the tail has grown, though 1 - a is its factor
+         ! compared with exp(-10) = 5e-5 the power law of the tail has grown, though 1 - a is its
+         ! factor
          call check_relative(material%rate(time), sls%rate(time), &
             5.0_wp*rounding + 1.0e3_wp*below(i), "and its rate")
          call check_relative(material%integral(time), sls%integral(time), rounding + below(i), &

@@ -1,4 +1,5 @@
-!> Contacts that grow again, spring by spring, compared with the numbers of tests/reference/regrowth.py
+!> Contacts that grow again, spring by spring, compared with the numbers of
+!> tests/reference/regrowth.py
 program test_springs
    use vcor_error, only : error_t
    use vcor_impact_law, only : contact_law_t, new_contact_law

@@ -164,12 +164,19 @@ def legends_of(results: list[Result]) -> list[str]:
                 unit = Case(results[0].case, name=results[0].path)._describe(key).unit
                 units[key] = unit if unit != "1" else ""
         names = {key: key.rpartition(".")[2].replace("_", " ") for key in keys}
-        words = [", ".join(f"{name} = {one[key].removesuffix('.0')} {units.get(key, '')}".strip()
+        words = [", ".join(f"{name} = {_short(one[key])} {units.get(key, '')}".strip()
                            for key, name in names.items() if key in one)
                  for one in values]  # fmt: skip
         if len(set(words)) == len(words):
             return words
     return [printable(Path(result.path).stem) for result in results]
+
+
+def _short(value: str) -> str:
+    """A value of a case as a figure shows it, numbers with five digits."""
+    with contextlib.suppress(ValueError):
+        return f"{float(value):.5g}"
+    return value
 
 
 def _values(case: str) -> dict[str, str]:

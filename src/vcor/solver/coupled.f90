@@ -189,7 +189,8 @@ contains
             if (level == self%kept%level .or. &
                 cor_error <= self%settings%accuracy .and. self%kept%level < 0) exit
             ! steps that do not resolve the contact tell nothing
-            if (level == finest .or. self%kept%level < 0 .and. now%coarse%dt*resolved <= impact%time_scale() .and. &
+            if (level == finest .or. self%kept%level < 0 &
+                .and. now%coarse%dt*resolved <= impact%time_scale() .and. &
                 cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
                call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
                   //'solver.accuracy, '//as_text(self%settings%accuracy)//', by ' &

@@ -321,6 +321,15 @@ def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.
     return table
 
 
+def not_judged(cases: Sequence[Case]) -> list[str]:
+    """What the validity of cases leaves out, as a material has no yield strength."""
+    names = {str(case[f"{body}.material"]): case for case in cases for body in ("sphere", "plate")}
+    bare = [name for name, case in names.items()
+            if case[f"{name.replace(' ', '_')}.yield_strength"] is None]  # fmt: skip
+    return [f"plastic deformation is not judged: no yield_strength of {', '.join(bare)}"
+            ] if len(bare) == len(names) else []  # fmt: skip
+
+
 def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
     """What the numbers are for."""
     temperature = case["impact.temperature"]
@@ -347,6 +356,7 @@ def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
         + (f", gravity {gravity:g} m/s2" if gravity else ""),
         f"velocities: {curve.velocity.values[0]:g} to {curve.velocity.values[-1]:g} m/s, validity "
         + curve.attrs["validity"],
+        *not_judged([case]),
         *(f"with contact.mechanics = 'exact': {words}" for words in [curve.attrs.get("exact")]
           if words),
     ]  # fmt: skip

@@ -118,7 +118,8 @@ def _work(options: argparse.Namespace) -> None:
     if options.output is None:
         sys.stdout.write(str(found))
         return
-    stem = f"{Path(options.case[0]).stem}_{found.target}"
+    of_pair = isinstance(found, Export)
+    stem = f"{Path(options.case[0]).stem if of_pair else 'mixture'}_{found.target}"
     from .._outputs import finish
 
     finish(options, "\n".join(found.header), stem, found.texts, found.figure())

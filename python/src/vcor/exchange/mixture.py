@@ -37,6 +37,7 @@ from .codes import (
     checked,
     comment,
     fits,
+    not_judged,
     pair_of,
     radii_of,
     refuse_shapes,
@@ -69,6 +70,13 @@ class Body:
             return f"{self.material}, radius {self.radius:.6g} m"
         return f"wall of {self.material}{self.layer}"
 
+    @property
+    def short(self) -> str:
+        """A name for a legend."""
+        if self.radius < math.inf:
+            return f"{self.material} {1e3 * self.radius:.4g} mm"
+        return f"wall of {self.material}"
+
 
 @dataclass(frozen=True)
 class Mixture:
@@ -90,15 +98,34 @@ class Mixture:
         return next(iter(self.texts.values()))
 
     def figure(self) -> Any:
-        """Figure (matplotlib) of e of all pairs over the velocity."""
-        from ..plot import COLUMN, HEIGHT, drawn
+        """Figure (matplotlib) of e of all pairs over the velocity, and of the program's law."""
+        from ..plot import HEIGHT, PAGE, drawn
 
-        with drawn(COLUMN, HEIGHT) as (made, axis):
-            for (i, j), curve in self.pairs.items():
-                e = curve[curve.attrs["e"]]
-                axis.plot(curve.velocity, e, marker="", label=f"{i}-{j}")
-            axis.set(xscale="log", xlabel="velocity [m/s]", ylabel="coefficient of restitution")
-            axis.legend(ncol=3)
+        kinds = dict.fromkeys(self.bodies[j - 1].material for _, j in self.pairs)
+        panels = [[at for at in self.pairs if self.bodies[at[1] - 1].material == one]
+                  for one in kinds]  # fmt: skip
+        rows = max(map(len, panels))
+        with drawn(PAGE, len(panels) * max(HEIGHT - 1.5, 0.5 * rows + 2), len(panels), 1,
+                   squeeze=False, sharex=True) as (made, axes):  # fmt: skip
+            for pairs, axis in zip(panels, axes.flat, strict=True):
+                for n, (i, j) in enumerate(pairs):
+                    curve = self.pairs[i, j]
+                    names = f"{i}-{j}: {self.bodies[i - 1].short}, {self.bodies[j - 1].short}"
+                    # beyond the styles of the cycle a marker tells
+                    marker = ["", ".", "x", "+"][n // 8 % 4]
+                    (line,) = axis.plot(curve.velocity, curve[curve.attrs["e"]], marker=marker,
+                                        label=names)  # fmt: skip
+                    if "e_law" in curve:
+                        axis.plot(curve.velocity, curve.e_law, ls="", marker="s", ms=2.5,
+                                  color=line.get_color(), mfc="none")  # fmt: skip
+                if any("e_law" in self.pairs[at] for at in pairs):
+                    axis.plot([], [], ls="", marker="s", ms=2.5, color="0.3", mfc="none",
+                              label=f"law for {self.target}")  # fmt: skip
+                middle, half = np.mean(axis.get_ylim()), np.ptp(axis.get_ylim()) / 2
+                axis.set_ylim(middle - max(half, 0.01), middle + max(half, 0.01))
+                axis.set(xscale="log", ylabel="coefficient of restitution")
+                axis.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+            axes.flat[-1].set_xlabel("velocity [m/s]")
         return made
 
 
@@ -271,6 +298,7 @@ def _header(
         + (f"{temperature:g} K" if temperature else "not given")
         + (f", gravity {gravity:g} m/s2" if gravity else ""),
         f"velocities: {v[0]:g} to {v[-1]:g} m/s",
+        *not_judged(list(table.values())),
         "pair    e at the first and last velocity, validity",
     ]  # fmt: skip
     for (i, j), one in curves.items():
@@ -345,6 +373,8 @@ def _by_laws(
         f"law: {twin.law.name}; {twin.law.end}",
         f"largest misfit of that law to vcor in all pairs: {misfit:.2g} in e, "
         f"{100 * time_misfit:.2g} % in the contact time",
+        "misfit in e by pair: "
+        + ", ".join(f"{i}-{j} {fit[1].misfit:.1g}" for (i, j), fit in some.items()),
         *(["one modulus of each type: the contact times of its pairs are a compromise"]
           if program.mixture == "types" else []),
         f"time step: {STEPS} in the shortest contact, {step:.3g} s, for e to 0.001; 50 for 0.01",
