@@ -137,7 +137,7 @@ def shell(folder, text, page=""):
 
 
 # Pages whose commands have a test of their own
-WALKED = ["README.md", "gallery.md", "dma_to_restitution.md", "recipes.md", "which_model.md"]
+WALKED = ["README.md", "gallery.md", "dma_to_restitution.md", "fitting.md", "recipes.md", "which_model.md"]
 
 
 def commands(page):
