@@ -302,6 +302,20 @@ def test_a_layer_without_waves_is_compared_with_its_waves(half_space):
     assert float(found.table.model.sel(quantity="cor")) > 1e-5
 
 
+def test_what_lies_beyond_the_data_is_said(half_space, swept):
+    """A band of times or temperatures that does not hold the impact, as `vcor run` warns of it."""
+    rubber = half_space["plate.material"]
+    inside = vcor.propagate(half_space, {f"{rubber}.beta": "1%"}, samples=64)
+    assert inside.beyond == "" and "beyond" not in str(inside)
+    half_space[f"{rubber}.valid_from"] = 2 * half_space.solve()["contact_time"]
+    found = vcor.propagate(half_space, {f"{rubber}.beta": "1%"}, samples=64)
+    assert f"the data of '{rubber}' begin at" in found.beyond
+    assert found.beyond in str(found) and found.as_dict()["beyond"] == found.beyond
+    swept["rubber.valid_from"] = float(np.median(swept.run().contact_time))
+    along = str(vcor.bands(swept, {"rubber.beta": "1%"}, samples=64))
+    assert "beyond the data, which no column above contains, at " in along
+
+
 def test_the_same_seed_gives_the_same_numbers(sls):
     one, two = (vcor.propagate(sls, {"rubber.beta": "5%"}, samples=64) for _ in range(2))
     assert one.as_dict() == two.as_dict()

@@ -28,7 +28,7 @@ from ._library import (
     within,
 )
 from ._text import option
-from .case import MOST_POINTS, Case, as_case, listed, with_material
+from .case import MOST_POINTS, Case, as_case, listed, number, with_material
 from .materials.advice import percent, product
 from .materials.limits import UNDETERMINED
 from .materials.observations import sharpen
@@ -220,6 +220,8 @@ class Uncertainty:
     #: Whether the model holds, and the column of the summary that decides
     validity: str
     validity_cause: str
+    #: What of the impact lies beyond the data of its materials, in words; empty if nothing does
+    beyond: str = ""
 
     def __str__(self) -> str:
         return _report(self)
@@ -237,6 +239,7 @@ class Uncertainty:
             without_result=self.lost,
             validity=self.validity,
             validity_cause=self.validity_cause,
+            beyond=self.beyond,
             quantities={
                 name: {
                     "unit": row.units.item(),
@@ -403,8 +406,8 @@ def propagate(
     values = found.reshape(blocks, -1, len(quantities))[kept].reshape(-1, len(quantities))
     sobol = _sobol(problem, values, names, seed)
     value = _values(case, quantities)
-    judged = case.solve(quantities=["validity", "validity_cause", "cor_error", "cor_sphere_error",
-                                    "contact_time_error", "max_force_error"])  # fmt: skip
+    errors = ["cor_error", "cor_sphere_error", "contact_time_error", "max_force_error"]
+    judged = case.solve(quantities=["validity", "validity_cause", "contact_time", *errors])
     # with waves = 'body' what is not stated is not known
     better = np.full(len(value), np.nan)
     if case["plate.waves"] != "body":
@@ -443,11 +446,41 @@ def propagate(
         },
     )
     row = table.isel(quantity=0)
-    errors = {key: float(row[key]) for key in ("numerical", "material", "model")}
-    errors = {key: error for key, error in errors.items() if math.isfinite(error)}
-    dominant = max(errors, key=errors.__getitem__)
-    words = [str(judged[name]) for name in ("validity", "validity_cause")]
-    return Uncertainty(table, len(found), len(found) - len(shown), dominant, *words)
+    known = {key: float(row[key]) for key in ("numerical", "material", "model")}
+    known = {key: error for key, error in known.items() if math.isfinite(error)}
+    dominant = max(known, key=known.__getitem__)
+    return Uncertainty(
+        table=table,
+        samples=len(found),
+        lost=len(found) - len(shown),
+        dominant=dominant,
+        validity=str(judged["validity"]),
+        validity_cause=str(judged["validity_cause"]),
+        beyond=_beyond(case, float(judged["contact_time"])),
+    )
+
+
+def _beyond(case: Case, contact_time: float) -> str:
+    """What lies beyond the data of the materials: the temperature, or most of the contact."""
+    said = []
+    for name in dict.fromkeys(str(case[f"{body}.material"]) for body in ("sphere", "plate")):
+        first, last, cold, warm = (
+            number(case, f"{name}.{key}")
+            for key in ("valid_from", "valid_to", "valid_temperature_from", "valid_temperature_to")
+        )
+        kelvin = number(case, "impact.temperature")
+        if kelvin < cold or kelvin > warm:
+            said.append(
+                f"{kelvin:g} K is outside of the shift of '{name}' ({cold:g} to {warm:g} K)"
+            )
+        factor = case.material(name).time_factor()
+        if 2 * first * factor > contact_time:
+            said.append(f"the contact lasts {contact_time:.2g} s, the data of '{name}' begin at "
+                        f"{first * factor:.2g} s")  # fmt: skip
+        if 2 * last * factor < contact_time:
+            said.append(f"the contact lasts {contact_time:.2g} s, the data of '{name}' end at "
+                        f"{last * factor:.2g} s")  # fmt: skip
+    return "; ".join(said)
 
 
 def _checked(case: Case | str | os.PathLike[str], quantities: Sequence[str]) -> list[str]:
@@ -584,6 +617,8 @@ def _report(found: Uncertainty) -> str:
     lines += ["validity: good", ""] if found.validity == "good" else [
         f"validity: {found.validity} by {found.validity_cause}, which no column above contains; "
         "vcor run says what it means", ""]  # fmt: skip
+    if found.beyond:
+        lines[-1:] = [f"beyond the data, which no column above contains: {found.beyond}", ""]
     lines.append(f"{name + ' by parameter':34s}{'elasticity':>11s}")
     lines += [
         f"{str(one):34s}{float(table.elasticity.sel(quantity=name, parameter=one)):11.4f}"

@@ -208,6 +208,11 @@ def _report(found: Bands) -> str:
     lines += ["", f"{name}: the largest error is " + ", ".join(
         f"that of the {'numbers' if key == 'numerical' else key} at {n}"
         for key, n in largest.items() if n) + f" of {len(found.points)} values"]  # fmt: skip
+    beyond = [(at, one.beyond) for at, one in known if one.beyond]
+    if beyond:
+        places = ", ".join(f"{at:g}" for at, _ in beyond[:8]) + ", ..." * (len(beyond) > 8)
+        lines += [f"beyond the data, which no column above contains, at {len(beyond)} of "
+                  f"{len(found.points)} values ({places}); the first: {beyond[0][1]}"]  # fmt: skip
     where = [known[i][0] for i in (0, -1)]
     ends = [known[i][1] for i in (0, -1)]
     head = f"share of the variance of {name} (total)"

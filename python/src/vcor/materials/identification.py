@@ -253,12 +253,14 @@ def identify(
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
+    # the accuracy that the fit needs is not one of the case
+    given = case.copy()
     if case["solver.method"] != "direct":
         sharpen(case, _deserved(blocks, scalars(errors)))
     with progress_bar(None, None) as bar, one_thread():
         problem = Problem(case, free, blocks, scalars(errors), bar)
         best, limits = _determined(problem, *problem.best(seed))
-        return _result(problem, best, limits, model or "")
+        return _result(problem, best, limits, model or "", given)
 
 
 def _deserved(blocks: Sequence[Block], errors: Mapping[str, float]) -> float:
@@ -288,9 +290,9 @@ def _determined(problem: Problem, x: Floats, chi2: float) -> tuple[Fit, list[lis
 
 
 def _result(
-    problem: Problem, best: Fit, limits: list[list[Interval]], model: str
+    problem: Problem, best: Fit, limits: list[list[Interval]], model: str, given: Case
 ) -> Identification:
-    """What the fit says."""
+    """What the fit says, with the given case completed by what it found."""
     x, chi2, derivatives = best.x, best.chi2, best.slopes
     case, free, dof = problem.case, problem.free, problem.dof
     predicted = problem.predict(x[None])[0]
@@ -298,7 +300,7 @@ def _result(
     eigenvalues, vectors = np.linalg.eigh(derivatives.T @ derivatives)
     covariance = best.covariance()
     for address, value in zip(free, np.exp(x), strict=True):
-        case[address] = float(value)
+        case[address] = given[address] = float(value)
     ends = np.minimum(x - problem.low, problem.high - x)
     estimates = tuple(
         _estimate(case, address, float(x[i]), float(covariance[i, i]), limits[i], ends[i] < BESIDE)
@@ -322,7 +324,7 @@ def _result(
     )
     order = np.argsort(-eigenvalues)
     return Identification(
-        case=case,
+        case=given,
         estimates=estimates,
         covariance=covariance,
         chi2=chi2,
