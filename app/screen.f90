@@ -164,23 +164,27 @@ contains
       real(wp), intent(in) :: error
       integer :: digits
 
-      ! below any error, so that nothing is divided by zero
-      real(wp), parameter :: least = 1.0e-20_wp
-
-      digits = digits_of_level(outcome%validity)
-      if (.not. (ieee_is_finite(error) .and. ieee_is_finite(value))) return
-      digits = max(2, min(digits, 1 + floor(log10(max(1.0_wp, abs(value)/max(error, least))))))
+      digits = digits_of_level(outcome%validity, value, error)
    end function digits_of
 
-   !> Digits that a number carries where the model holds, and where it holds with caution or not
-   pure function digits_of_level(level) result(digits)
+   !> Digits that a number carries where the model holds, and where it holds with caution or not;
+   !> no more than one beyond its error
+   pure function digits_of_level(level, value, error) result(digits)
       !> Level of validity
       integer, intent(in) :: level
+      real(wp), intent(in) :: value
+      !> Stated error; 0 or NaN if there is none
+      real(wp), intent(in) :: error
       integer :: digits
+
+      ! below any error, so that nothing is divided by zero
+      real(wp), parameter :: least = 1.0e-20_wp
 
       digits = 8
       if (level == level_caution) digits = 4
       if (level == level_outside) digits = 3
+      if (.not. (ieee_is_finite(error) .and. ieee_is_finite(value))) return
+      digits = max(2, min(digits, 1 + floor(log10(max(1.0_wp, abs(value)/max(error, least))))))
    end function digits_of_level
 
    !> Remark on a number that is less accurate than a reader expects

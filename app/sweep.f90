@@ -249,8 +249,8 @@ contains
                if (first == 0) cycle
                k = digits_between(values(first), values(last))
                line = padded('    '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
-                  //significant(values(first), max(k, digits_at(first)))//where_is(first) &
-                  //significant(values(last), max(k, digits_at(last)))//where_is(last)
+                  //significant(values(first), max(k, digits_at(blocks(i)%names(j), first)))//where_is(first) &
+                  //significant(values(last), max(k, digits_at(blocks(i)%names(j), last)))//where_is(last)
                if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
                lines = lines//line//nl
             end associate
@@ -260,15 +260,29 @@ contains
 
    contains
 
-      !> Digits that the validity of a point leaves
-      function digits_at(point) result(digits)
+      !> Digits of a quantity that validity and error of a point leave
+      function digits_at(name, point) result(digits)
+         character(len=*), intent(in) :: name
          integer, intent(in) :: point
          integer :: digits
 
+         character(len=*), parameter :: with_errors(*) = [character(len=12) :: 'cor', &
+            'cor_sphere', 'contact_time', 'max_force']
+         real(wp) :: error(1), value(1)
+
+         error = 0.0_wp
+         value = 1.0_wp
+         if (any(name == with_errors)) then
+            associate (values => numbers_of(summary, name), &
+                       errors => numbers_of(summary, trim(name)//'_error'))
+               value = values(point)
+               error = errors(point)
+            end associate
+         end if
          associate (column => summary%columns(place_in_table(summary, 'validity') &
                     - size(summary%dimensions)))
             ! texts are counted from 1, levels from that of no result
-            digits = digits_of_level(column%integers(point) - 1 + level_none)
+            digits = digits_of_level(column%integers(point) - 1 + level_none, value(1), error(1))
          end associate
       end function digits_at
 

@@ -573,7 +573,10 @@ def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
         capsys.readouterr().out
     )
     export.main(["wall.nml", "beads.nml", "rubber.nml", "glass.nml", *tail, "--output", "out"])
-    assert {path.name for path in Path("out").iterdir()} == {"mixture_lammps.in", "mixture_lammps.svg"}
+    assert {path.name for path in Path("out").iterdir()} == {
+        "mixture_lammps.in",
+        "mixture_lammps.svg",
+    }
     assert "pair_coeff  1 1" in Path("out/mixture_lammps.in").read_text()
     capsys.readouterr()
     with pytest.raises(SystemExit) as caught:

@@ -486,6 +486,19 @@ def test_bands_are_those_of_each_impact(swept):
     assert table.validity.item() == wanted.validity == swept.run().validity.values[1]
 
 
+def test_a_long_computation_is_announced(swept, tmp_path, capsys, monkeypatch):
+    """How many impacts it solves and about how long that takes, before it begins."""
+    from vcor import uncertainty_command
+
+    swept.save(tmp_path / "a.nml")
+    words = [str(tmp_path / "a.nml"), "--vary", "rubber.beta=5%", "--samples", "64", "--quantity",
+             "cor", "--output", str(tmp_path)]  # fmt: skip
+    for limit, said in ((1e9, False), (0.0, True)):
+        monkeypatch.setattr(uncertainty_command, "LONG", limit)
+        uncertainty_command.main(words)
+        assert ("192 impacts take some" in capsys.readouterr().err) is said
+
+
 def test_bands_are_of_all_quantities_that_the_impacts_have(swept):
     found = vcor.bands(swept, {"rubber.beta": "5%"}, samples=64)
     assert found.quantities[0] == "cor"

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import math
+import os
+import time
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from . import _command
+from ._library import Error
 from ._outputs import finish
-from .case import read
+from ._text import option
+from .case import Case, read, with_values
 from .results import as_csv, as_hdf5
 from .uncertainty import USUAL, propagate
 from .uncertainty_sweep import bands
+
+#: Time that is announced [s]
+LONG = 60.0
 
 
 def _parser() -> _command.Parser:
@@ -50,6 +60,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _work(_parser().options(arguments))
 
 
+def _announce(case: Case, samples: int, threads: int | None) -> None:
+    """Say how long it may take, if that is long."""
+    axes, one = case._axes(), case
+    for address, values in axes.items():
+        one = with_values(one, {address: float(values[0])})
+    begin = time.perf_counter()
+    with contextlib.suppress(Error):
+        one.solve(quantities=["cor"])
+    impacts = samples * math.prod(len(values) for values in axes.values())
+    seconds = (time.perf_counter() - begin) * impacts / (threads or os.cpu_count() or 1)
+    if seconds > LONG:
+        warnings.warn(
+            f"{case.name}: {impacts} impacts take some {math.ceil(seconds / 60)} min at least; "
+            f"{option('samples')} with a smaller number takes less", stacklevel=2,
+        )  # fmt: skip
+
+
 def _work(options: argparse.Namespace) -> None:
     vary: dict[str, str | float] = {}
     for word in options.vary:
@@ -58,6 +85,7 @@ def _work(options: argparse.Namespace) -> None:
     for word in options.set:
         address, _, case[address] = word.partition("=")
     swept = bool(case._axes())
+    _announce(case, options.samples, options.threads)
     found = (bands if swept else propagate)(
         case,
         vary,
