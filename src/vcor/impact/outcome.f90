@@ -90,8 +90,8 @@ module vcor_impact_outcome
       real(wp) :: layer_ratio = none
       !> Force divided by that on a half space at the largest indentation of a layer on a base [-]
       real(wp) :: layer_stiffening = none
-      !> Largest indentation divided by the thickness of a layer on a base, times the plate's share of
-      !> the compliance [-]
+      !> Largest indentation divided by the thickness of a layer on a base, times the plate's share
+      !> of the compliance [-]
       real(wp) :: layer_strain = none
       !> Thickness times the wavenumber of bending waves at the frequency pi/t0 [-]
       real(wp) :: plate_wave_number = none

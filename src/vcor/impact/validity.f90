@@ -282,7 +282,8 @@ contains
       values = [merge(none, outcome%contact_ratio, around%is_true), &
          merge(none, outcome%thickness_ratio, around%on_base), outcome%layer_strain, &
          outcome%plate_wave_number, outcome%needed_extent/around%extent, &
-         outcome%deflection_ratio, outcome%weight_ratio, outcome%mean_pressure/around%yield_strength, &
+         outcome%deflection_ratio, outcome%weight_ratio, &
+         outcome%mean_pressure/around%yield_strength, &
          thick, bends, merge(huge(thick), none, outcome%gains_energy())]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
       do i = 1, size(thresholds)
