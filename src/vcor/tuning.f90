@@ -102,7 +102,7 @@ module vcor_tuning
    real(wp), parameter :: ive_usual = 1.0e-8_wp
    !> With a continuous spectrum, accuracy below which the first panel is shorter: its error falls
    !> as the square of its duration
-   real(wp), parameter :: ive_continuous = 3.3e-7_wp
+   real(wp), parameter :: ive_continuous = 3.0e-6_wp
    !> Controller: safety, largest growth and smallest cut of a length
    real(wp), parameter :: ive_safety = 0.9_wp
    real(wp), parameter :: ive_growth = 1.5_wp
@@ -111,7 +111,7 @@ module vcor_tuning
    real(wp), parameter :: ive_tolerable = 4.0_wp
    !> Newton's method: error left in x over the tolerance of a panel; contraction above which the
    !> Jacobian is computed again, which contracts by about the size of the correction before
-   real(wp), parameter :: ive_leftover = 1.0e-4_wp
+   real(wp), parameter :: ive_leftover = 1.0e-2_wp
    real(wp), parameter :: ive_contraction = 0.2_wp
    !> Rounding in the indentation of a sphere in contact under its weight, over its fall without it
    real(wp), parameter :: ive_rounding_of_fall = 7.0e-15_wp

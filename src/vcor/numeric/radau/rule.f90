@@ -50,10 +50,9 @@ module vcor_numeric_radau_rule
       !> `closing`, whose last stage has no weight, is left out: functions f with f(0) = 0 do not
       !> need it, others do not hold at that stage
       complex(wp) :: eigenvalue(slots) = 1.0_wp
-      !> From values at the stages to coefficients of the eigenvectors
-      complex(wp) :: left(slots, width) = 0.0_wp
-      !> From real and imaginary parts of these coefficients, in turn, to values at the stages
-      real(wp) :: right(width, 2*slots) = 0.0_wp
+      !> From values at the stages to coefficients of the eigenvectors, their real and imaginary parts
+      !> in turn, and back
+      real(wp) :: left(2*slots, width) = 0.0_wp, right(width, 2*slots) = 0.0_wp
       !> The same for the last stage alone
       complex(wp) :: last(slots) = 0.0_wp
       !> `left` times a vector of ones
@@ -220,14 +219,14 @@ contains
          m = m + 1
          map%eigenvalue(m) = cmplx(wr(j), wi(j), wp)
          map%right(:n, 2*m - 1) = vector(:, j)
-         map%left(m, :n) = inverse(j, :)
+         map%left(2*m - 1, :n) = inverse(j, :)
          if (wi(j) > 0.0_wp) then
             ! x Re v + y Im v is the real part of (x - i y) v
             map%right(:n, 2*m) = -vector(:, j + 1)
-            map%left(m, :n) = cmplx(inverse(j, :), -inverse(j + 1, :), wp)
+            map%left(2*m, :n) = -inverse(j + 1, :)
          end if
       end do
-      map%left_one = sum(map%left, 2)
+      map%left_one = pairs(sum(map%left, 2))
       map%last = cmplx(map%right(n, 1::2), -map%right(n, 2::2), wp)
    end subroutine diagonalise
 
@@ -242,7 +241,7 @@ contains
       integer :: j
 
       do j = 1, width
-         matrix(:, j) = self%compose(f*self%left(:, j))
+         matrix(:, j) = self%compose(f*pairs(self%left(:, j)))
       end do
    end function function_of
 
@@ -254,13 +253,25 @@ contains
       !> Coefficients
       complex(wp) :: c(slots)
 
-      integer :: j
+      real(wp) :: y(2*slots)
+      integer :: i
 
-      c = self%left(:, 1)*x(1)
-      do j = 2, width
-         c = c + self%left(:, j)*x(j)
-      end do
+      associate (l => self%left)
+         do i = 1, 2*slots
+            y(i) = ((l(i, 1)*x(1) + l(i, 2)*x(2)) + (l(i, 3)*x(3) + l(i, 4)*x(4))) &
+               + ((l(i, 5)*x(5) + l(i, 6)*x(6)) + (l(i, 7)*x(7) + l(i, 8)*x(8)))
+         end do
+      end associate
+      c = pairs(y)
    end function decompose
+
+   !> Complex numbers from their real and imaginary parts, in turn
+   pure function pairs(y) result(c)
+      real(wp), intent(in) :: y(2*slots)
+      complex(wp) :: c(slots)
+
+      c = cmplx(y(1::2), y(2::2), wp)
+   end function pairs
 
    !> The vector with given coefficients
    pure function compose(self, c) result(x)

@@ -62,9 +62,8 @@ module vcor_solver_ive_approach
 contains
 
    !> Add a panel
-   subroutine add(self, law, rule, rates, panel)
+   subroutine add(self, rule, rates, panel)
       class(approach_t), intent(inout) :: self
-      type(contact_law_t), intent(in) :: law
       type(rule_t), intent(in), target :: rule
       !> Rates of the modes [1/s], shape (modes)
       real(wp), intent(in) :: rates(:)
@@ -100,7 +99,7 @@ contains
          gained = 0.0_wp
          gained(:n) = panel%indentation(1:n) - panel%indentation(0)
          s = map%decompose(gained)
-         gained(:n) = law%u(panel%indentation(1:n)) - law%u(panel%indentation(0))
+         gained(:n) = panel%u(1:n) - panel%u(0)
          u = map%decompose(gained)
          do k = 1, size(rates)
             stretch%lag(1, k) = self%w(k)
@@ -111,7 +110,7 @@ contains
             self%p(k) = stretch%lag(points + n + 1, k)
             if (.not. stretch%slow(k)) cycle
             stretch%lag(points + 1:points + n + 1, k) = stretch%lag(points + 1:points + n + 1, k) &
-               - law%u(panel%indentation(:n))
+               - panel%u(:n)
          end do
       end associate
    end subroutine add

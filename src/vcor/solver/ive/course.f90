@@ -208,7 +208,7 @@ contains
 
       real(wp), parameter :: tenth = 0.1_wp
       real(wp), dimension(width) :: s, u
-      real(wp) :: difference, start_u, stiffness, swing
+      real(wp) :: difference, stiffness, swing
       integer :: k
 
       associate (fine => self%fine%panel, coarse => self%coarse%panel, down => self%bridge%down, &
@@ -218,8 +218,7 @@ contains
          difference = maxval(abs(s(:n) - coarse%indentation(1:n))) &
             - abs(fine%indentation(0) - coarse%indentation(0))
          error = tenth**2*max(0.0_wp, difference)/(self%speed*self%time_scale)
-         start_u = law%u(fine%indentation(0))
-         u = start_u*down(:, 0) + apply(down(:, 1:), law%u(fine%indentation(1:)))
+         u = fine%u(0)*down(:, 0) + apply(down(:, 1:), fine%u(1:))
          stiffness = 0.0_wp
          do k = 1, size(contact%rates)
             swing = contact%rates(k)*fine%step%duration/real(fine%stages, wp)
@@ -477,7 +476,7 @@ contains
          if (of_indentation) return
          stiffness = contact%equilibrium + sum(contact%moduli, &
             contact%rates*panel%step%duration < real(n, wp))
-         value = stiffness*law%u(value) - sum(basis(:n)*(stiffness*law%u(panel%indentation(:n)) &
+         value = stiffness*law%u(value) - sum(basis(:n)*(stiffness*panel%u(:n) &
             - panel%force(:n)))
       end associate
    end function value_inside

@@ -81,7 +81,7 @@ module vcor_solver_ive_equations
       !> H and its eigenvalues [s]
       real(wp) :: h(width, width)
       complex(wp) :: eigenvalue(slots)
-      !> S [N/m^1.5], R [s2/kg] without a varying alpha, and R S
+      !> S [N/m^1.5], R [s2/kg] and R S; without the factor H/m + alpha if alpha varies
       complex(wp) :: stiffness(slots), yield(slots), whole(slots)
       !> Velocity of the plate per impulse, from its memory, P [1/kg], and that from the memory of
       !> earlier panels [m/s]
@@ -96,8 +96,6 @@ module vcor_solver_ive_equations
       real(wp) :: gain(width)
       !> r [m], or [N/m^0.5]
       real(wp) :: right(width)
-      !> u at the start of the panel [m^1.5]
-      real(wp) :: start_u
       !> Whether M has been formed, and M
       logical :: formed = .false.
       real(wp) :: matrix(width, width)
@@ -108,6 +106,7 @@ module vcor_solver_ive_equations
    contains
       procedure :: matrix_times
       procedure :: form_matrix
+      procedure, private :: with_plate
       procedure, private :: lost_indentation
       procedure, private :: lost_velocity
    end type equations_t
@@ -132,7 +131,6 @@ contains
          call self%panel%begin(self%rule, step, start, e%elapsed)
          e%h = step%duration*e%map%matrix
          e%eigenvalue = step%duration*e%map%eigenvalue
-         e%yield = e%inverse_mass*e%eigenvalue**2
          velocity = impact%free_velocity(start%time) - start%impulse*e%inverse_mass
          e%gain = e%elapsed*(velocity + 0.5_wp*impact%gravity*e%elapsed)
          call add_plate(self, e)
@@ -140,7 +138,6 @@ contains
          call find_response(contact, start%lag, e%eigenvalue, e%stiffness, e%memory)
          e%memory = e%memory*e%map%left_one
          e%viscosity = 0.0_wp
-         e%start_u = 0.0_wp
          if (self%recedes) then
             e%viscosity = contact%viscosity
             e%whole = e%stiffness*e%yield
@@ -151,8 +148,7 @@ contains
          else
             if (contact%viscosity > 0.0_wp) e%stiffness = e%stiffness &
                + contact%viscosity/e%eigenvalue
-            e%start_u = impact%law%u(start%indentation)
-            e%memory = e%memory + contact%equilibrium*e%start_u*e%map%left_one
+            e%memory = e%memory + contact%equilibrium*start%u*e%map%left_one
             e%whole = e%stiffness*e%yield
             e%right = start%indentation + e%gain - e%lost_indentation(e%memory)
          end if
@@ -177,7 +173,6 @@ contains
             e%alpha(:n) = self%sums%plate%viscosity
             call find_response(self%sums%plate, start%plate_lag, e%eigenvalue, e%plate, e%past)
             e%past = e%past*e%map%left_one
-            e%yield = e%yield + e%plate*e%eigenvalue**2
             e%gain = e%gain - e%map%compose(e%eigenvalue*e%past)
          else if (plate%moves()) then
             call plate%alpha_at(self%panel%time(1:n), e%alpha(:n))
@@ -185,7 +180,9 @@ contains
             e%varies = e%alpha(n) > e%alpha(1)
             if (e%varies) e%gain = e%gain - (e%alpha - start%alpha)*start%impulse
          end if
-         if (.not. e%varies) e%yield = e%yield + e%alpha(1)*e%eigenvalue
+         e%yield = e%eigenvalue
+         if (.not. e%varies) e%yield = e%yield*(e%inverse_mass*e%eigenvalue + e%alpha(1))
+         if (e%remembers) e%yield = e%yield + e%plate*e%eigenvalue**2
          self%panel%alpha(1:) = e%alpha
       end associate
    end subroutine add_plate
@@ -214,9 +211,18 @@ contains
       !> Indentation [m]
       real(wp) :: lost(width)
 
-      lost = self%map%compose(self%yield*force)
-      if (self%varies) lost = lost + self%alpha*apply(self%h, self%map%compose(force))
+      lost = self%with_plate(self%map%compose(self%yield*force))
    end function lost_indentation
+
+   !> The factor H/m + alpha, if alpha varies
+   pure function with_plate(self, x) result(product)
+      class(equations_t), intent(in) :: self
+      real(wp), intent(in) :: x(width)
+      real(wp) :: product(width)
+
+      product = x
+      if (self%varies) product = self%inverse_mass*apply(self%h, x) + self%alpha*x
+   end function with_plate
 
    !> Rate of the indentation lost to forces in the panel, Q F
    pure function lost_velocity(self, force) result(lost)
@@ -246,14 +252,10 @@ contains
          return
       end if
       c = self%map%decompose(f)
-      if (.not. self%recedes) then
-         product = self%map%compose(self%whole*c)
-         if (self%varies) product = product &
-            + self%alpha*apply(self%h, self%map%compose(self%stiffness*c))
-      else if (self%varies) then
+      if (self%recedes .and. self%varies) then
          product = self%map%compose(self%stiffness*self%map%decompose(self%lost_indentation(c)))
       else
-         product = self%map%compose(self%whole*c)
+         product = self%with_plate(self%map%compose(self%whole*c))
       end if
       if (self%viscosity > 0.0_wp) product = product + self%viscosity*self%lost_velocity(f)
    end function matrix_times
@@ -262,31 +264,27 @@ contains
    pure subroutine form_matrix(self)
       class(equations_t), intent(inout) :: self
 
-      real(wp) :: unit(width), column(width, width)
+      real(wp) :: unit(width)
       integer :: j
 
       if (self%recedes .and. (self%viscosity > 0.0_wp .or. self%varies)) then
          do j = 1, width
             unit = 0.0_wp
             unit(j) = 1.0_wp
-            column(:, j) = self%matrix_times(unit)
+            self%matrix(:, j) = self%matrix_times(unit)
          end do
-         self%matrix = column
       else
          self%matrix = self%map%function_of(self%whole)
-         if (self%varies) then
-            column = self%map%function_of(self%eigenvalue*self%stiffness)
-            do j = 1, width
-               self%matrix(:, j) = self%matrix(:, j) + self%alpha*column(:, j)
-            end do
-         end if
+         do j = 1, width
+            self%matrix(:, j) = self%with_plate(self%matrix(:, j))
+         end do
       end if
       self%formed = .true.
    end subroutine form_matrix
 
    !> The unknown x and f(x) at the stages: indentation and u, or condition and force from t1
    pure subroutine evaluate(self, e)
-      class(motion_t), intent(in) :: self
+      class(motion_t), intent(inout) :: self
       type(equations_t), intent(inout) :: e
 
       if (self%recedes) then
@@ -295,7 +293,8 @@ contains
       else
          e%x = self%panel%indentation(1:)
          call self%impact%law%evaluate(width, e%x, e%f, e%slope)
-         e%f = e%x*e%f - e%start_u
+         self%panel%u(1:) = e%x*e%f
+         e%f = self%panel%u(1:) - self%start%u
       end if
    end subroutine evaluate
 
@@ -425,15 +424,14 @@ contains
 
       real(wp) :: gained(width)
 
-      associate (panel => self%panel, start => self%start, law => self%impact%law, &
+      associate (panel => self%panel, start => self%start, &
                  map => self%rule%map(self%panel%step%kind), time => self%panel%step%duration)
          self%work = self%work + self%work_in_panel()
          gained = panel%indentation(1:) - start%indentation
          if (self%recedes) then
             call advance_lags(map, time, self%sums%contact, gained, start%lag)
          else
-            gained(:panel%stages) = law%u(panel%indentation(1:panel%stages)) &
-               - law%u(start%indentation)
+            gained = panel%u(1:) - start%u
             call advance_lags(map, time, self%sums%contact, gained, start%lag)
          end if
          if (self%impact%plate%hereditary()) call advance_lags(map, time, self%sums%plate, &

@@ -168,7 +168,7 @@ contains
             panel%velocity(n) = motion%velocity_at(n)
             kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates &
                *panel%step%duration))
-            call look_ahead(kappa, kappa*law%u(panel%indentation) - panel%force)
+            call look_ahead(kappa, kappa*panel%u - panel%force)
          end if
       end associate
 

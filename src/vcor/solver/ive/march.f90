@@ -568,7 +568,7 @@ contains
          call self%record(trajectory)
          if (.not. fine%recedes) call self%record_peaks(trajectory)
          if (fine%impact%law%receding .and. .not. fine%recedes) call fine%approach%add( &
-            fine%impact%law, fine%rule, fine%sums%contact%rates, panel)
+            fine%rule, fine%sums%contact%rates, panel)
          call fine%advance()
          call self%coarse%advance()
          ! panels that creep to the place where the contact grows have not passed it

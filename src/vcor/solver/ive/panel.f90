@@ -20,8 +20,8 @@ module vcor_solver_ive_panel
    type :: state_t
       !> Time [s]
       real(wp) :: time = 0.0_wp
-      !> Indentation s [m]
-      real(wp) :: indentation = 0.0_wp
+      !> Indentation s [m], and the u of it [m^1.5], which is not kept up while the contact recedes
+      real(wp) :: indentation = 0.0_wp, u = 0.0_wp
       !> Its rate [m/s]
       real(wp) :: velocity = 0.0_wp
       !> Force F [N]
@@ -50,8 +50,8 @@ module vcor_solver_ive_panel
       real(wp) :: map(2)
       !> Times [s]
       real(wp) :: time(0:width)
-      !> Indentation [m] and its rate [m/s]; the rate is set by `find_velocity`
-      real(wp) :: indentation(0:width), velocity(0:width)
+      !> Indentation [m], its u [m^1.5] and its rate [m/s]; the rate is set by `find_velocity`
+      real(wp) :: indentation(0:width), u(0:width), velocity(0:width)
       !> Force [N]
       real(wp) :: force(0:width)
       !> Impulse [N s], and its integral [N s2]
@@ -90,6 +90,7 @@ contains
       self%time(0) = start%time
       self%time(1:) = start%time + elapsed
       self%indentation(0) = start%indentation
+      self%u(0) = start%u
       self%velocity(0) = start%velocity
       self%force(0) = start%force
       self%impulse(0) = start%impulse
@@ -143,6 +144,7 @@ contains
       associate (n => self%stages)
          start%time = self%time(n)
          start%indentation = self%indentation(n)
+         start%u = self%u(n)
          start%velocity = self%velocity(n)
          start%force = self%force(n)
          start%impulse = self%impulse(n)
