@@ -17,6 +17,10 @@
 !> integrals do not see, so slow exponentials stay as accurate as at the end of any panel. Fast
 !> ones, whose m_0 falls only as a^(-1/2), would be affected most by a slope.
 !>
+!> Of a function whose rate is known, such as an impulse, dx/dy = -2 D y f with a polynomial f(y)
+!> through its rates at the points after the start. That of x would end with a rate which is that of
+!> no f: the force ends as y^(3/2), and fast exponentials feel its last value alone.
+!>
 !> The powers of y come from an expansion in Legendre polynomials. Computed from the values in one
 !> step, their coefficients would have independent errors, five digits of 16; this way they belong
 !> to a polynomial that differs from x(y) by rounding.
@@ -26,7 +30,7 @@ module vcor_numeric_radau_settling
    implicit none
    private
 
-   public :: settling_t, new_settling
+   public :: settling_t, new_settling, total
 
    !> Highest degree of dx/dy
    integer, parameter :: highest = 8
@@ -34,14 +38,14 @@ module vcor_numeric_radau_settling
    !> Rule for polynomials given by their values at fixed points
    type :: settling_t
       private
-      !> From the values at the points to the coefficients of -dx/dy in Legendre polynomials P_k,
-      !> k <= n, of 2 y - 1
-      real(wp) :: legendre(0:highest, 0:highest) = 0.0_wp
+      !> From the values of x at the points to the coefficients of -dx/dy in Legendre polynomials P_k,
+      !> k <= n, of 2 y - 1, and from those of f to the coefficients of f
+      real(wp) :: of_slope(0:highest, 0:highest) = 0.0_wp, of_rate(0:highest, 0:highest) = 0.0_wp
       !> Coefficient of y^k in P_j(2 y - 1), shape (k, j)
       real(wp) :: power(0:highest, 0:highest) = 0.0_wp
    contains
-      procedure :: total
-      procedure, private :: slope_powers
+      procedure :: powers_of_slope
+      procedure :: powers_of_rate
    end type settling_t
 
 contains
@@ -52,7 +56,7 @@ contains
       !> Points theta = 1 - y of the polynomials, rising to 1, shape (0:n), n <= 8
       real(wp), intent(in) :: point(0:)
 
-      real(wp) :: y(highest + 1), weight(highest + 1), polynomial(0:highest), slope
+      real(wp) :: y(highest + 1), weight(highest + 1), projection(0:highest), slope
       real(wp) :: at(0:ubound(point, 1))
       integer :: i, j, k, n
 
@@ -60,14 +64,14 @@ contains
       at = 1.0_wp - point
       call gauss_nodes(y, weight)
       do j = 1, highest + 1
-         polynomial = legendre(highest, 2.0_wp*y(j) - 1.0_wp)
+         projection = legendre(highest, 2.0_wp*y(j) - 1.0_wp)*weight(j) &
+            *[(real(2*k + 1, wp), k=0, highest)]
          do i = 0, n
             slope = slope_of_basis(at, i, y(j)) - slope_of_basis(at, i, 0.0_wp) &
                *slope_of_product(at, y(j))/slope_of_product(at, 0.0_wp)
-            do k = 0, n
-               self%legendre(k, i) = self%legendre(k, i) - real(2*k + 1, wp)*weight(j) &
-                  *polynomial(k)*slope
-            end do
+            self%of_slope(:n, i) = self%of_slope(:n, i) - projection(:n)*slope
+            if (i > 0) self%of_rate(:n, i) = self%of_rate(:n, i) + projection(:n) &
+               *basis(at(1:), i, y(j))
          end do
       end do
       do j = 0, highest
@@ -77,6 +81,20 @@ contains
          end do
       end do
    end subroutine new_settling
+
+   !> Lagrange polynomial
+   pure function basis(point, i, y) result(value)
+      !> Points, shape (n)
+      real(wp), intent(in) :: point(:)
+      !> Index of the point at which the polynomial is 1
+      integer, intent(in) :: i
+      !> Argument
+      real(wp), intent(in) :: y
+      real(wp) :: value
+
+      value = product((y - point(:i - 1))/(point(i) - point(:i - 1))) &
+         *product((y - point(i + 1:))/(point(i) - point(i + 1:)))
+   end function basis
 
    !> Derivative of a Lagrange polynomial
    pure function slope_of_basis(point, i, y) result(slope)
@@ -120,8 +138,7 @@ contains
    end function slope_of_product
 
    !> Sum of G_k w_k at the end of the panel
-   pure function total(self, moduli, rates, scale, start, x)
-      class(settling_t), intent(in) :: self
+   pure function total(moduli, rates, scale, start, g)
       !> Moduli G_k, shape (modes)
       real(wp), intent(in) :: moduli(:)
       !> Rates l_k [1/s], >= 0, shape (modes)
@@ -130,16 +147,15 @@ contains
       real(wp), intent(in) :: scale
       !> w_k at the start, shape (modes)
       real(wp), intent(in) :: start(:)
-      !> x at the points, shape (0:n)
-      real(wp), intent(in) :: x(0:)
+      !> Coefficients of -dx/dy in powers of y
+      real(wp), intent(in) :: g(0:highest)
       !> Sum
       real(wp) :: total
 
-      real(wp), dimension(0:highest) :: g, moment
+      real(wp) :: moment(0:highest)
       real(wp) :: decay
       integer :: k
 
-      g = self%slope_powers(x)
       total = 0.0_wp
       do k = 1, size(moduli)
          call find_moments(rates(k)*scale, moment, decay)
@@ -149,8 +165,8 @@ contains
       end do
    end function total
 
-   !> Coefficients of -dx/dy in powers of y
-   pure function slope_powers(self, x) result(g)
+   !> Coefficients of -dx/dy in powers of y, from x at the points
+   pure function powers_of_slope(self, x) result(g)
       class(settling_t), intent(in) :: self
       !> x at the points, shape (0:n)
       real(wp), intent(in) :: x(0:)
@@ -163,13 +179,36 @@ contains
       n = ubound(x, 1)
       coefficient = 0.0_wp
       do i = 0, n - 1
-         coefficient = coefficient + self%legendre(:, i)*(x(i) - x(n))
+         coefficient = coefficient + self%of_slope(:, i)*(x(i) - x(n))
       end do
       g = 0.0_wp
       do i = 0, highest
          g = g + self%power(:, i)*coefficient(i)
       end do
-   end function slope_powers
+   end function powers_of_slope
+
+   !> Coefficients of -dx/dy in powers of y, from the rate of x at the points after the start
+   pure function powers_of_rate(self, scale, f) result(g)
+      class(settling_t), intent(in) :: self
+      !> Duration D of the panel [s]
+      real(wp), intent(in) :: scale
+      !> Rate dx/dt at the points, shape (n)
+      real(wp), intent(in) :: f(:)
+      !> Coefficients
+      real(wp) :: g(0:highest)
+
+      real(wp) :: coefficient(0:highest)
+      integer :: i
+
+      coefficient = 0.0_wp
+      do i = 1, size(f)
+         coefficient = coefficient + self%of_rate(:, i)*(2.0_wp*scale*f(i))
+      end do
+      g = 0.0_wp
+      do i = 0, highest
+         g(1:) = g(1:) + self%power(:highest - 1, i)*coefficient(i)
+      end do
+   end function powers_of_rate
 
    !> Moments m_k = int_0^1 exp(-a y^2) y^k dy
    pure subroutine find_moments(a, moment, decay)

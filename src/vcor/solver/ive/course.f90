@@ -7,6 +7,7 @@ module vcor_solver_ive_course
    use vcor_numeric_radau_rule, only : bridge_t
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
+   use vcor_solver_ive_newton, only : solve_companion
    use vcor_solver_ive_panel, only : panel_t, step_t
    use vcor_tuning, only : ive_harmless, ive_leftover, ive_rounding_per_panel, ive_share
    implicit none
@@ -409,7 +410,7 @@ contains
       ! error of the position in the panel; the maximum feels its square, the pressure at that time
       ! feels it as it is
       real(wp), parameter :: position = 1.0e-14_wp
-      real(wp) :: slopes(0:width), theta, beyond, coarse
+      real(wp) :: slopes(0:width), theta, beyond
       integer :: n, j, other
 
       associate (rule => self%fine%rule, map => self%fine%panel%map)
@@ -436,11 +437,7 @@ contains
             abs(value(j) - value_inside(self%coarse, of_indentation, rule%point(j))), &
             abs(value(other) - value_inside(self%coarse, of_indentation, rule%point(other))))
          if (at_branch*difference <= 0.5_wp*self%accuracy*peak) return
-         coarse = peak - difference
-         call value_at(self%fine, of_indentation, .false., time, peak)
-         if (of_indentation) return
-         call value_at(self%coarse, of_indentation, .true., time, coarse)
-         difference = abs(peak - coarse)
+         call solve_up_to_peak(self, of_indentation, time, peak, difference)
       end associate
 
    contains
@@ -481,27 +478,39 @@ contains
       end associate
    end function value_inside
 
-   !> Indentation or force at a time within a panel, by solving it up to there
-   subroutine value_at(motion, of_indentation, fresh, time, value)
-      type(motion_t), intent(inout) :: motion
+   !> Value of a maximum, and its difference between the two solutions, by solving the panel up to
+   !> there; unchanged if the equations cannot be solved
+   subroutine solve_up_to_peak(self, of_indentation, time, peak, difference)
+      class(course_t), intent(inout) :: self
       !> Whether the indentation, otherwise the force
       logical, intent(in) :: of_indentation
-      !> Whether it has no Jacobian of its own panel
-      logical, intent(in) :: fresh
       !> Time since the start of the panel [s]
       real(wp), intent(in) :: time
-      !> The value; unchanged if the equations cannot be solved
-      real(wp), intent(inout) :: value
+      !> Maximum, and its difference from that of the coarse solution
+      real(wp), intent(inout) :: peak, difference
 
-      type(panel_t) :: whole
+      type(panel_t) :: fine, coarse
 
-      whole = motion%panel
-      call solve_up_to(motion, time, fresh)
-      associate (panel => motion%panel)
-         if (panel%converged) value = merge(panel%indentation(panel%stages), &
-            panel%force(panel%stages), of_indentation)
-      end associate
-      motion%panel = whole
-   end subroutine value_at
+      fine = self%fine%panel
+      coarse = self%coarse%panel
+      call solve_up_to(self%fine, time)
+      if (self%fine%panel%converged) call solve_companion(self%coarse, self%fine, self%bridge)
+      if (self%fine%panel%converged .and. self%coarse%panel%converged) then
+         peak = last_value(self%fine%panel)
+         difference = abs(peak - last_value(self%coarse%panel))
+      end if
+      self%fine%panel = fine
+      self%coarse%panel = coarse
+
+   contains
+
+      !> Value at the end of a panel
+      pure function last_value(panel) result(value)
+         type(panel_t), intent(in) :: panel
+         real(wp) :: value
+
+         value = merge(panel%indentation(panel%stages), panel%force(panel%stages), of_indentation)
+      end function last_value
+   end subroutine solve_up_to_peak
 
 end module vcor_solver_ive_course

@@ -42,43 +42,44 @@ contains
       ! length over that of the last panel beyond which polynomials are useless; largest correction
       ! of a closing panel
       real(wp), parameter :: farthest = 2.0_wp, longest = 0.4_wp
+      ! correction over the square root of the accuracy that may be left: results take the rest into
+      ! account, to first order
+      real(wp), parameter :: near = 1.0e-2_wp
       ! correction of a time, relative, that may be rounding
       real(wp), parameter :: rounding = 1.0e-7_wp
       type(panel_t) :: last
-      type(step_t) :: step
       real(wp) :: duration, correction, last_correction, allowed
       integer :: iteration
 
       found = .false.
       correction = huge(1.0_wp)
       duration = time
-      last = motion%panel
       do iteration = 1, most
+         last = motion%panel
          if (.not. (duration > epsilon(1.0_wp)*motion%start%time .and. duration > 0.0_wp &
              .and. duration < farthest*last%step%duration)) return
-         step = step_up_to(last%step, duration)
-         call solve_near(motion, last, step, .false.)
+         if (abs(duration - last%step%duration) > 0.0_wp) &
+            call solve_near(motion, last, step_up_to(last%step, duration))
          if (.not. motion%panel%converged) return
          last_correction = correction
          call time_to_event(motion, event, correction, found)
          if (.not. found) return
-         found = .false.
          if (event == event_close) correction = sign(min(abs(correction), longest*duration), &
             correction)
-         allowed = accuracy*(motion%start%time + duration)
-         ! a turn need not be exact: the two laws of the force differ by the fourth power of the
-         ! time since then
-         if (event == event_turn) allowed = 1.0e-2_wp*sqrt(accuracy)*duration
+         allowed = near*sqrt(accuracy)*duration
+         ! the velocity of a plate with a memory follows the force, which ends as the 3/4 power of the
+         ! time left
+         if (event == event_close .and. motion%impact%plate%hereditary()) &
+            allowed = accuracy**(4.0_wp/3.0_wp)*duration
          found = abs(correction) <= allowed .or. iteration > 3 &
             .and. abs(correction) <= rounding*(motion%start%time + duration) &
             .and. abs(correction) >= 0.25_wp*abs(last_correction)
          ! on a plate that goes along, s' may fall slowly
          if (event == event_turn) found = found &
             .and. abs(motion%panel%velocity(motion%panel%stages)) &
-            <= 1.0e-2_wp*sqrt(accuracy)*motion%impact%velocity
+            <= near*sqrt(accuracy)*motion%impact%velocity
          if (found) return
          duration = duration + correction
-         last = motion%panel
       end do
    end subroutine cut_at_event
 
@@ -95,17 +96,15 @@ contains
    end function step_up_to
 
    !> Solve a panel that differs little from another
-   subroutine solve_near(motion, other, step, fresh)
+   subroutine solve_near(motion, other, step)
       type(motion_t), intent(inout) :: motion
       !> The other panel
       type(panel_t), intent(in) :: other
       type(step_t), intent(in) :: step
-      !> Whether it has no Jacobian of a neighbour
-      logical, intent(in) :: fresh
 
       integer :: attempt
 
-      do attempt = merge(2, 1, fresh), 2
+      do attempt = 1, 2
          if (motion%recedes) then
             call guess_rebound(motion, other, step, 0.0_wp, 0.0_wp, .true.)
          else
@@ -117,18 +116,16 @@ contains
    end subroutine solve_near
 
    !> Solve the panel from its start up to a time within it, such as that of a maximum
-   subroutine solve_up_to(motion, time, fresh)
+   subroutine solve_up_to(motion, time)
       !> The solution, its panel solved
       type(motion_t), intent(inout) :: motion
       !> Duration [s]
       real(wp), intent(in) :: time
-      !> Whether it has no Jacobian of its own panel
-      logical, intent(in) :: fresh
 
       type(panel_t) :: whole
 
       whole = motion%panel
-      call solve_near(motion, whole, step_up_to(whole%step, time), fresh)
+      call solve_near(motion, whole, step_up_to(whole%step, time))
    end subroutine solve_up_to
 
    !> Time from the end of a panel to an event, to first order in what is smooth there

@@ -278,7 +278,8 @@ contains
             time = theta*(panel%map(1) + panel%map(2)*theta)
          else
             ! an event that follows soon belongs to this panel
-            if (self%reaches_end_time .or. .not. fine%start%time > 0.0_wp) return
+            if (self%reaches_end_time .or. .not. fine%start%time > 0.0_wp &
+                .or. self%refused < huge(1.0_wp)) return
             call time_to_event(fine, event, time, found)
             if (.not. found .or. .not. time > 0.0_wp .or. time > soon*panel%step%duration) return
             time = time + panel%step%duration
@@ -356,7 +357,7 @@ contains
                error = self%errors(0, trajectory%max_force)
                if (self%refused_ends < ive_ends) self%excess = max(self%excess, &
                   error(of_cor)/self%accuracy, error(of_cor_sphere)/self%accuracy, &
-                  error(of_time)/(self%accuracy*fine%panel%time(fine%panel%stages)))
+                  0.5_wp*error(of_time)/(self%accuracy*fine%panel%time(fine%panel%stages)))
             else
                self%excess = huge(1.0_wp)
             end if

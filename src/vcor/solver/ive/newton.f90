@@ -12,7 +12,7 @@ module vcor_solver_ive_newton
    public :: solve_panel, solve_companion, guess_growth, guess_rebound
 
    !> Maximum number of iterations
-   integer, parameter :: most_iterations = 40
+   integer, parameter :: most_iterations = 12
    !> Position beyond the end of a panel up to which its polynomials are a guess; those of t1, which
    !> has a vertex, diverge sooner
    real(wp), parameter :: farthest = 2.5_wp, farthest_t1 = 1.2_wp
