@@ -116,7 +116,7 @@ contains
       self%end_weight(0:n - 1) = barycentric_weights(self%point(0:n - 1)) &
          /(1.0_wp - self%point(0:n - 1))
       self%end_weight = self%end_weight/sum(self%end_weight)
-      call new_settling(self%settling, self%point(0:n))
+      call new_settling(self%settling, self%point(1:n))
       call integration_matrix(self%point(1:n), matrix, error)
       if (allocated(error)) return
       self%weight(1:n) = matrix(n, :)

@@ -21,7 +21,6 @@ module vcor_solver_ive_equations
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : apply, width
    use vcor_numeric_radau_rule, only : closing, map_t, rule_t, slots
-   use vcor_numeric_radau_settling, only : total
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_lags, only : advance_lags, find_response, sums_t
    use vcor_solver_ive_panel, only : panel_t, state_t, step_t
@@ -356,16 +355,14 @@ contains
 
       associate (n => self%rule%stages, panel => self%panel, start => self%start, &
                  contact => self%sums%contact, plate => self%sums%plate, &
-                 settling => self%rule%settling)
-         if (self%impact%plate%hereditary()) panel%drift(n) = total(plate%moduli, &
-            plate%rates, panel%step%duration, start%plate_lag, &
-            settling%powers_of_rate(panel%step%duration, panel%force(1:n)))
+                 time => self%panel%step%duration)
+         if (self%impact%plate%hereditary()) panel%drift(n) = self%rule%settling%total( &
+            plate%moduli, plate%rates, time, start%plate_lag, panel%force(1:n))
          panel%t1(n) = sum(self%rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
+         call self%find_velocity()
          panel%condition(n) = contact%equilibrium*panel%indentation(n) &
-            + total(contact%moduli, contact%rates, panel%step%duration, start%lag, &
-            settling%powers_of_slope(panel%indentation(:n)))
-         if (contact%viscosity > 0.0_wp) panel%condition(n) = panel%condition(n) &
-            + contact%viscosity*self%velocity_at(n)
+            + self%rule%settling%total(contact%moduli, contact%rates, time, start%lag, &
+            panel%velocity(1:n)) + contact%viscosity*panel%velocity(n)
       end associate
    end subroutine set_end
 
