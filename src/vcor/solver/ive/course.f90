@@ -478,8 +478,8 @@ contains
       end associate
    end function value_inside
 
-   !> Value of a maximum, and its difference between the two solutions, by solving the panel up to
-   !> there; unchanged if the equations cannot be solved
+   !> Value of a maximum, and for the force its difference between the two solutions, by solving the
+   !> panel up to there; unchanged if the equations cannot be solved
    subroutine solve_up_to_peak(self, of_indentation, time, peak, difference)
       class(course_t), intent(inout) :: self
       !> Whether the indentation, otherwise the force
@@ -494,10 +494,10 @@ contains
       fine = self%fine%panel
       coarse = self%coarse%panel
       call solve_up_to(self%fine, time)
-      if (self%fine%panel%converged) call solve_companion(self%coarse, self%fine, self%bridge)
-      if (self%fine%panel%converged .and. self%coarse%panel%converged) then
+      if (self%fine%panel%converged) then
          peak = last_value(self%fine%panel)
-         difference = abs(peak - last_value(self%coarse%panel))
+         if (.not. of_indentation) call solve_companion(self%coarse, self%fine, self%bridge)
+         if (self%coarse%panel%converged) difference = abs(peak - last_value(self%coarse%panel))
       end if
       self%fine%panel = fine
       self%coarse%panel = coarse

@@ -50,8 +50,6 @@ module vcor_solver_ive_equations
       type(approach_t), pointer :: approach => null()
       !> Condition N at the largest indentation [N/m^0.5]
       real(wp) :: largest_condition = 0.0_wp
-      !> Work of the force on the plate's damping, int alpha F^2, up to the start of the panel [J]
-      real(wp) :: work = 0.0_wp
    contains
       procedure :: set_up
       procedure :: evaluate
@@ -425,7 +423,6 @@ contains
 
       associate (panel => self%panel, start => self%start, &
                  map => self%rule%map(self%panel%step%kind), time => self%panel%step%duration)
-         self%work = self%work + self%work_in_panel()
          gained = panel%indentation(1:) - start%indentation
          if (self%recedes) then
             call advance_lags(map, time, self%sums%contact, gained, start%lag)

@@ -204,8 +204,9 @@ contains
          do j = 1, width
             elapsed = elapsed_at(motion%rule, step, j)
             t1(j) = start%t1 + elapsed*(rate + 0.5_wp*bend*elapsed)
-            if (ends) t1(j) = t1(j) - (start%t1 &
-               + step%duration*(rate + 0.5_wp*bend*step%duration))*(elapsed/step%duration)**2
+            ! t1 ends as the root of the time left
+            if (ends) t1(j) = start%t1*left(elapsed)*(1.0_wp + (1.0_wp - left(elapsed)) &
+               *(1.0_wp + 2.0_wp*step%duration*rate/start%t1))
             if (previous%stages > 0) then
                theta = previous%theta(start%time + elapsed)
                if (theta <= farthest_t1) t1(j) = motion%rule%interpolate(previous%t1, theta)
@@ -213,6 +214,17 @@ contains
             t1(j) = min(t1(j), vertex - slowest*min(start%time + elapsed - vertex, near*vertex))
          end do
       end associate
+
+   contains
+
+      !> Root of the share of the step that is left
+      pure function left(elapsed)
+         !> Time since its start [s]
+         real(wp), intent(in) :: elapsed
+         real(wp) :: left
+
+         left = sqrt(max(0.0_wp, 1.0_wp - elapsed/step%duration))
+      end function left
    end subroutine guess_rebound
 
    !> Time of a stage since the start of a step [s]
