@@ -436,7 +436,7 @@ contains
          difference = max(abs(peak - value_inside(self%coarse, of_indentation, theta)), &
             abs(value(j) - value_inside(self%coarse, of_indentation, rule%point(j))), &
             abs(value(other) - value_inside(self%coarse, of_indentation, rule%point(other))))
-         if (at_branch*difference <= 0.5_wp*self%accuracy*peak) return
+         if (merge(1.0_wp, at_branch, of_indentation)*difference <= 0.5_wp*self%accuracy*peak) return
          call solve_up_to_peak(self, of_indentation, time, peak, difference)
       end associate
 
