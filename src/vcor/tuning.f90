@@ -100,9 +100,9 @@ module vcor_tuning
    real(wp), parameter :: ive_first = 0.1225_wp
    !> Accuracy for which lengths are given; they grow with the order of the rule
    real(wp), parameter :: ive_usual = 1.0e-8_wp
-   !> With a continuous spectrum, accuracy below which the first panel is shorter: its error falls
-   !> as the square of its duration
-   real(wp), parameter :: ive_continuous = 3.0e-6_wp
+   !> With a continuous spectrum, accuracy below which the first panel is shorter. With a fifteenth
+   !> of it the largest force misses the accuracy in one of nine impacts, and the march is repeated
+   real(wp), parameter :: ive_continuous = 5.0e-6_wp
    !> Controller: safety, largest growth and smallest cut of a length
    real(wp), parameter :: ive_safety = 0.9_wp
    real(wp), parameter :: ive_growth = 1.5_wp

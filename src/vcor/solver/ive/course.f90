@@ -149,6 +149,11 @@ contains
                state(col_sphere_velocity) = impact%free_velocity(panel%time(j)) &
                   - panel%impulse(j)/impact%mass
                state(col_plate) = state(col_sphere) - panel%indentation(j)
+               ! what Newton's method leaves is in s
+               if (.not. impact%plate%hereditary()) then
+                  state(col_plate) = panel%alpha(j)*panel%impulse(j)
+                  state(col_indentation) = state(col_sphere) - state(col_plate)
+               end if
                state(col_plate_velocity) = state(col_sphere_velocity) - panel%velocity(j)
             end associate
          end do

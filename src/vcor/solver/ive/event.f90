@@ -66,7 +66,8 @@ contains
          if (.not. found) return
          if (event == event_close) correction = sign(min(abs(correction), longest*duration), &
             correction)
-         allowed = near*sqrt(accuracy)*duration
+         allowed = accuracy*duration
+         if (event == event_turn) allowed = near*sqrt(accuracy)*duration
          ! the velocity of a plate with a memory follows the force, which ends as the 3/4 power of the
          ! time left
          if (event == event_close .and. motion%impact%plate%hereditary()) &
@@ -192,7 +193,8 @@ contains
                if (.not. slope < 0.0_wp) return
                correction = (memory(n) + rate*time - kappa*law%u(s + v*time))/slope
                time = time + correction
-               found = abs(correction) <= roughly*abs(time)
+               found = abs(correction) <= max(roughly*abs(time), &
+                  epsilon(1.0_wp)*motion%panel%time(n))
                if (found) return
             end do
          end associate

@@ -140,10 +140,11 @@ contains
       call start_motion(self%coarse, rules(2))
       self%length = ive_first*impact%law%contact_time*time_scale &
          *(self%tolerance/ive_usual)**(1.0_wp/14.0_wp)
-      ! modes that settle within the first panel are not resolved: its impulse is off by a fixed
-      ! part of itself
+      ! modes that settle within the first panel are not resolved: its impulse, a power of its
+      ! duration, is off by a fixed part of itself
       if (sums%contact%error > 0.0_wp) &
-         self%length = self%length*sqrt(min(1.0_wp, self%tolerance/ive_continuous))
+         self%length = self%length*min(1.0_wp, self%tolerance/ive_continuous) &
+            **(1.0_wp/(1.0_wp + impact%law%start_exponent))
 
    contains
 
