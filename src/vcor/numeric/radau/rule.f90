@@ -73,8 +73,9 @@ module vcor_numeric_radau_rule
       real(wp) :: weight(width) = 0.0_wp
       !> Barycentric weights of `point`
       real(wp) :: barycentric(0:width) = 0.0_wp
-      !> Extrapolation to the end of the panel from all points but the last
-      real(wp) :: end_weight(0:width) = 0.0_wp
+      !> Extrapolation to the end of the panel from all points but the last, and to its start from
+      !> the nodes
+      real(wp) :: end_weight(0:width) = 0.0_wp, start_weight(width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
       !> Exponentials at the end of a panel with the map `closing`
@@ -116,6 +117,8 @@ contains
       self%end_weight(0:n - 1) = barycentric_weights(self%point(0:n - 1)) &
          /(1.0_wp - self%point(0:n - 1))
       self%end_weight = self%end_weight/sum(self%end_weight)
+      self%start_weight(1:n) = -barycentric_weights(self%point(1:n))/self%point(1:n)
+      self%start_weight = self%start_weight/sum(self%start_weight)
       call new_settling(self%settling, self%point(1:n))
       call integration_matrix(self%point(1:n), matrix, error)
       if (allocated(error)) return

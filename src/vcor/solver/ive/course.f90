@@ -415,13 +415,16 @@ contains
       ! error of the position in the panel; the maximum feels its square, the pressure at that time
       ! feels it as it is
       real(wp), parameter :: position = 1.0e-14_wp
-      real(wp) :: slopes(0:width), theta, beyond
+      real(wp) :: smooth(0:width), slopes(0:width), theta, beyond
       integer :: n, j, other
 
       associate (rule => self%fine%rule, map => self%fine%panel%map)
          n = rule%stages
          j = maxloc(value(0:n), 1) - 1
-         slopes = rule%slopes(value)
+         smooth = value
+         ! the force at the start has the error of a rate at the end of the panel before
+         if (.not. of_indentation) smooth(0) = sum(rule%start_weight*value(1:))
+         slopes = rule%slopes(smooth)
          other = j + merge(1, -1, slopes(j) > 0.0_wp)
          beyond = -0.5_wp*slopes(j)**2/sum(rule%derivative(j, :)*slopes)
          ! close to an end of the panel a parabola has it

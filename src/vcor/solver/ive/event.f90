@@ -14,6 +14,7 @@ module vcor_solver_ive_event
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_panel
    use vcor_solver_ive_panel, only : panel_t, step_t
+   use vcor_tuning, only : ive_rounding_per_panel
    implicit none
    private
 
@@ -194,7 +195,7 @@ contains
                correction = (memory(n) + rate*time - kappa*law%u(s + v*time))/slope
                time = time + correction
                found = abs(correction) <= max(roughly*abs(time), &
-                  epsilon(1.0_wp)*motion%panel%time(n))
+                  ive_rounding_per_panel*motion%panel%time(n))
                if (found) return
             end do
          end associate
