@@ -199,7 +199,7 @@ contains
          "model = 'sls', glassy_modulus = 15e6, alpha = 150, beta = 600", &
          "model = 'sls', glassy_modulus = 15e6, alpha = 1500, beta = 60000", &
          "model = 'cerf', equilibrium_modulus = 1e6, relaxing_modulus = 1e8, beta = 100"]
-      integer, parameter :: usual(2, 4) = reshape([50, 50, 50, 52, 127, 134, 100, 103], [2, 4])
+      integer, parameter :: usual(2, 4) = reshape([50, 50, 50, 52, 127, 134, 110, 111], [2, 4])
       type(row_t) :: row
       type(ive_t) :: ive
       type(trajectory_t) :: trajectory
