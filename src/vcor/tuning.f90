@@ -109,8 +109,9 @@ module vcor_tuning
    real(wp), parameter :: ive_cut = 0.2_wp
    !> Largest excess of a panel that is accepted if a shorter one was no better
    real(wp), parameter :: ive_tolerable = 4.0_wp
-   !> Newton's method: error left in x over the tolerance of a panel; contraction above which the
-   !> Jacobian is computed again, which contracts by about the size of the correction before
+   !> Newton's method: error left in x over the tolerance of a panel, which is then no part of it
+   !> that counts; contraction above which the Jacobian is computed again, which contracts by about
+   !> the size of the correction before
    real(wp), parameter :: ive_leftover = 1.0e-3_wp
    real(wp), parameter :: ive_contraction = 0.2_wp
    !> Rounding in the indentation of a sphere in contact under its weight, over its fall without it

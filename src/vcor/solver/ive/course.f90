@@ -3,13 +3,13 @@ module vcor_solver_ive_course
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_numeric_radau_dense, only : apply, width
+   use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
    use vcor_solver_ive_newton, only : solve_companion
    use vcor_solver_ive_panel, only : panel_t, step_t
-   use vcor_tuning, only : ive_harmless, ive_leftover, ive_rounding_per_panel, ive_share
+   use vcor_tuning, only : ive_harmless, ive_rounding_per_panel, ive_share
    implicit none
    private
 
@@ -62,9 +62,6 @@ module vcor_solver_ive_course
       logical :: turns = .false., ends = .false., reaches_end_time = .false.
       !> Times from the end of the panel to the end of the contact in the two solutions [s]
       real(wp) :: fine_end = 0.0_wp, coarse_end = 0.0_wp
-      !> Effect of the approach between the ends of its panels on a rebound, over `speed`: of this
-      !> panel, and the largest so far [-]
-      real(wp) :: inner_now = 0.0_wp, inner = 0.0_wp
       !> Sum of what the panels have added to the difference, without cancellation [-]
       real(wp) :: added = 0.0_wp
       !> Velocity that both solutions miss alike after the largest indentation, over `speed` [-]
@@ -88,7 +85,6 @@ module vcor_solver_ive_course
       procedure :: begin
       procedure :: record
       procedure :: motion_error
-      procedure :: inner_error
       procedure :: missed_kick
       procedure :: find_ends
       procedure :: end_without_force
@@ -202,39 +198,6 @@ contains
       end function added
    end function motion_error
 
-   !> Error of the approach between the ends of its panels as a rebound feels it, which reads it at
-   !> all times. Errors of a polynomial alternate in sign from node to node, and integrals over them
-   !> feel a tenth. That of s is a tenth of the difference of the two solutions. That of u as a
-   !> polynomial from u of the polynomial of s matters as far as modes neither follow u nor stand
-   !> still while it alternates, see `approach_t`
-   pure function inner_error(self) result(error)
-      class(course_t), intent(in) :: self
-      !> Error over `speed` [-]
-      real(wp) :: error
-
-      real(wp), parameter :: tenth = 0.1_wp
-      real(wp), dimension(width) :: s, u
-      real(wp) :: difference, stiffness, swing
-      integer :: k
-
-      associate (fine => self%fine%panel, coarse => self%coarse%panel, down => self%bridge%down, &
-                 law => self%fine%impact%law, n => self%coarse%panel%stages, &
-                 contact => self%fine%sums%contact)
-         s = fine%indentation(0)*down(:, 0) + apply(down(:, 1:), fine%indentation(1:))
-         difference = maxval(abs(s(:n) - coarse%indentation(1:n))) &
-            - abs(fine%indentation(0) - coarse%indentation(0))
-         error = tenth**2*max(0.0_wp, difference)/(self%speed*self%time_scale)
-         u = fine%u(0)*down(:, 0) + apply(down(:, 1:), fine%u(1:))
-         stiffness = 0.0_wp
-         do k = 1, size(contact%rates)
-            swing = contact%rates(k)*fine%step%duration/real(fine%stages, wp)
-            stiffness = stiffness + contact%moduli(k)*swing/(1.0_wp + swing**2)
-         end do
-         error = max(error, tenth*maxval(abs(u(:n) - law%u(s(:n))))*stiffness &
-            *fine%step%duration/(self%fine%impact%mass*self%speed))
-      end associate
-   end function inner_error
-
    !> Velocity that both solutions miss alike after the largest indentation. Modes that are fast
    !> beside the rebound make a layer of width 1/l there, before which t1 goes back as fast as time
    !> runs, and after which the relaxed contact gives way: with s' = -a (t - t_m) and the stiffness
@@ -325,15 +288,14 @@ contains
       associate (v0 => self%fine%impact%velocity, panel => self%fine%panel, &
                  n => self%fine%panel%stages)
          ! both solutions share what Newton's method leaves
-         left = ive_leftover*self%tolerance*real(panels, wp)
+         left = self%fine%tolerance*real(panels, wp)
          factor = 1.0_wp
          if (panel%indentation(n) < near_branch*panel%indentation(0)) factor = at_branch
          least = min((self%added + left)*self%speed/v0, ive_harmless*self%accuracy)
          error(of_cor:of_cor_sphere) = max(factor*abs(fine - coarse)/v0, least) &
-            + self%inner*self%speed/v0 + ive_rounding_per_panel*real(panels, wp)
+            + ive_rounding_per_panel*real(panels, wp)
          if (self%fine%recedes) factor = at_branch
-         error(of_time) = max(factor*abs(self%fine_end - self%coarse_end), least*panel%time(n)) &
-            + self%inner*panel%time(n)
+         error(of_time) = max(factor*abs(self%fine_end - self%coarse_end), least*panel%time(n))
          ! a kick at rest changes the velocity of a rebound to second order, but its time to first
          error(of_time) = error(of_time) + self%kick*self%speed/max(abs(fine(1)), tiny(1.0_wp)) &
             *panel%time(n)

@@ -157,8 +157,10 @@ contains
          motion%sums => sums
          motion%rule => rule
          motion%approach => approach
-         ! rounding in products with a matrix
-         motion%tolerance = max(width**2*epsilon(1.0_wp), ive_leftover*self%tolerance)
+         ! at least rounding in products with a matrix; next to nothing of a force may decide when a
+         ! contact ends, whatever the accuracy
+         motion%tolerance = max(width**2*epsilon(1.0_wp), &
+            ive_leftover*min(self%tolerance, ive_usual))
          associate (now => motion%start)
             now%alpha = impact%plate%alpha(0.0_wp)
             now%force = impact%first_force()
@@ -329,8 +331,7 @@ contains
    end subroutine solve_rebound
 
    !> What the panel adds to the difference of the two solutions, over what it may add. In addition:
-   !> the time of the end; the approach between the ends of its panels, which a rebound reads; and
-   !> panels that hide an end
+   !> the time of the end, the force where it is largest, and panels that hide an end
    subroutine judge(self, trajectory)
       type(course_t), intent(inout) :: self
       type(trajectory_t), intent(in) :: trajectory
@@ -345,10 +346,6 @@ contains
          self%growth = self%motion_error()
          self%excess = self%growth/self%tolerance
          call fine%find_velocity()
-         if (impact%law%receding .and. .not. fine%recedes) then
-            self%inner_now = self%inner_error()
-            self%excess = max(self%excess, self%inner_now/self%tolerance)
-         end if
          associate (coarse => self%coarse%panel)
             coarse%velocity(coarse%stages) = self%coarse%velocity_at(coarse%stages)
          end associate
@@ -561,7 +558,6 @@ contains
 
       self%refused = huge(1.0_wp)
       self%added = self%added + self%growth
-      self%inner = max(self%inner, self%inner_now)
       associate (fine => self%fine, panel => self%fine%panel)
          if (self%ends) then
             self%last_errors = self%errors(trajectory%steps + 1, trajectory%max_force)
