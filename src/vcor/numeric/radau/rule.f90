@@ -50,8 +50,8 @@ module vcor_numeric_radau_rule
       !> `closing`, whose last stage has no weight, is left out: functions f with f(0) = 0 do not
       !> need it, others do not hold at that stage
       complex(wp) :: eigenvalue(slots) = 1.0_wp
-      !> From values at the stages to coefficients of the eigenvectors, their real and imaginary parts
-      !> in turn, and back
+      !> From values at the stages to coefficients of the eigenvectors, their real and imaginary
+      !> parts in turn, and back
       real(wp) :: left(2*slots, width) = 0.0_wp, right(width, 2*slots) = 0.0_wp
       !> The same for the last stage alone
       complex(wp) :: last(slots) = 0.0_wp

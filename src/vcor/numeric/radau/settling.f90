@@ -12,8 +12,8 @@
 !> for large a, from m_0 = sqrt(pi/a)/2 erf(sqrt(a)), and downwards for small a, from series of
 !> positive terms, m_k = exp(-a) sum_i (2 a)^i/((k + 1)(k + 3) .. (k + 1 + 2 i)).
 !>
-!> For slow exponentials this is as accurate as collocation at the end of any panel. Fast ones follow
-!> the last value of f, which is known: a force, for example, is zero there.
+!> For slow exponentials this is as accurate as collocation at the end of any panel. Fast ones
+!> follow the last value of f, which is known: a force, for example, is zero there.
 !>
 !> The powers of y come from an expansion in Legendre polynomials. Computed from the values in one
 !> step, their coefficients would have independent errors, five digits of 16; this way they belong

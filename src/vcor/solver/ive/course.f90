@@ -70,9 +70,7 @@ module vcor_solver_ive_course
       real(wp) :: last_errors(4) = 0.0_wp
       !> `excess` of the end refused before
       real(wp) :: refused_end = huge(1.0_wp)
-      !> Number of ends refused, an end that was found [s], and the time before which it is not
-      !> tried again [s]
-      integer :: refused_ends = 0
+      !> An end that was found [s], and the time before which it is not tried again [s]
       real(wp) :: end_found = 0.0_wp, lead = 0.0_wp
       !> Rebound: time left, and the duration allowed for the last panel [s]
       real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
@@ -406,7 +404,8 @@ contains
          difference = max(abs(peak - value_inside(self%coarse, of_indentation, theta)), &
             abs(value(j) - value_inside(self%coarse, of_indentation, rule%point(j))), &
             abs(value(other) - value_inside(self%coarse, of_indentation, rule%point(other))))
-         if (merge(1.0_wp, at_branch, of_indentation)*difference <= 0.5_wp*self%accuracy*peak) return
+         if (merge(1.0_wp, at_branch, of_indentation)*difference <= 0.5_wp*self%accuracy*peak) &
+            return
          call solve_up_to_peak(self, of_indentation, time, peak, difference)
       end associate
 

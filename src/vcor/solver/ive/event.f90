@@ -43,8 +43,8 @@ contains
       ! length over that of the last panel beyond which polynomials are useless; largest correction
       ! of a closing panel
       real(wp), parameter :: farthest = 2.0_wp, longest = 0.4_wp
-      ! correction over the square root of the accuracy that may be left: results take the rest into
-      ! account, to first order
+      ! correction of a turn over the square root of the accuracy that may be left: the two laws of
+      ! the force differ by the fourth power of the time since then
       real(wp), parameter :: near = 1.0e-2_wp
       ! correction of a time, relative, that may be rounding
       real(wp), parameter :: rounding = 1.0e-7_wp
@@ -69,8 +69,8 @@ contains
             correction)
          allowed = accuracy*duration
          if (event == event_turn) allowed = near*sqrt(accuracy)*duration
-         ! the velocity of a plate with a memory follows the force, which ends as the 3/4 power of the
-         ! time left
+         ! the velocity of a plate with a memory follows the force, which ends as the 3/4 power of
+         ! the time left
          if (event == event_close .and. motion%impact%plate%hereditary()) &
             allowed = accuracy**(4.0_wp/3.0_wp)*duration
          found = abs(correction) <= allowed .or. iteration > 3 &
