@@ -440,8 +440,8 @@ class Reader:
                     f"{self.path}:{table.line}: found the column '{head.text}', expected one of "
                     f"velocity, rebound_velocity, drop_height, rebound_height, bounce_time, cor, "
                     f"cor_sphere, resilience, contact_time, max_force, temperature, radius, "
-                    f"diameter, mass, another column of the summary or an address, or NAME_sigma for a "
-                    f"standard error"
+                    f"diameter, mass, another column of the summary or an address, or "
+                    f"NAME_sigma for a standard error"
                     f"{'' if meant else near(bare, known)}; or "
                     f"{option('columns', {meant or 'NAME': head.text})}{', say' * bool(meant)}"
                 )
