@@ -249,8 +249,10 @@ contains
                if (first == 0) cycle
                k = digits_between(values(first), values(last))
                line = padded('    '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
-                  //significant(values(first), max(k, digits_at(blocks(i)%names(j), first)))//where_is(first) &
-                  //significant(values(last), max(k, digits_at(blocks(i)%names(j), last)))//where_is(last)
+                  //significant(values(first), max(k, digits_at(blocks(i)%names(j), first))) &
+                  //where_is(first) &
+                  //significant(values(last), max(k, digits_at(blocks(i)%names(j), last))) &
+                  //where_is(last)
                if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
                lines = lines//line//nl
             end associate
