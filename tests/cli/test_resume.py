@@ -29,7 +29,7 @@ from program import FILE, NUMERICAL, USAGE, Vcor, complaint, program
 def solved(tmp_path_factory):
     """A long sweep, and its undisturbed files in the folder ref."""
     vcor = Vcor(tmp_path_factory.mktemp("long"))
-    write_long_sweep(vcor, 1.0)
+    write_long_sweep(vcor, 2.0)
     vcor.reference = vcor("run", "case.nml", "--output", "ref")
     assert vcor.reference.code == NUMERICAL
     return vcor
@@ -88,7 +88,8 @@ def test_signal(long, number):
     assert (code, out, err) == (-number, "", "")
     part = long.folder / "out" / PART
     assert {path.name for path in part.parent.iterdir()} == {PART}
-    head, *lines = part.read_text().splitlines()
+    # the signal may come within a line, which the next run leaves out
+    head, *lines = part.read_text().rpartition("\n")[0].splitlines()
     version = long("--version").out.split()[1]
     assert head.startswith(f"# vcor {version} ") and len(head.split()[3]) == 8
     rows = (long.folder / "ref" / "case_summary.csv").read_text().splitlines()

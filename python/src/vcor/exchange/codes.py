@@ -325,7 +325,7 @@ def not_judged(cases: Sequence[Case]) -> list[str]:
     """What the validity of cases leaves out, as a material has no yield strength."""
     names = {str(case[f"{body}.material"]): case for case in cases for body in ("sphere", "plate")}
     bare = [name for name, case in names.items()
-            if case[f"{name.replace(' ', '_')}.yield_strength"] is None]  # fmt: skip
+            if case[f"{name.strip().replace(' ', '_')}.yield_strength"] is None]  # fmt: skip
     return [f"plastic deformation is not judged: no yield_strength of {', '.join(bare)}"
             ] if len(bare) == len(names) else []  # fmt: skip
 

@@ -70,7 +70,9 @@ module vcor_solver_ive_course
       real(wp) :: last_errors(4) = 0.0_wp
       !> `excess` of the end refused before
       real(wp) :: refused_end = huge(1.0_wp)
-      !> An end that was found [s], and the time before which it is not tried again [s]
+      !> Number of ends refused, an end that was found [s], and the time before which it is not
+      !> tried again [s]
+      integer :: refused_ends = 0
       real(wp) :: end_found = 0.0_wp, lead = 0.0_wp
       !> Rebound: time left, and the duration allowed for the last panel [s]
       real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
