@@ -431,7 +431,13 @@ contains
       results = ieee_value(1.0_wp, ieee_quiet_nan)
       allocate (places(size(columns)))
 !$omp critical (vcor_c_api)
-      call new_summary(summary, n, error, max(1, threads))
+      team = max(1, threads)
+      if (threads == 0) team = default_threads()
+      ! a child of fork does not have the threads of its parent
+      current = getpid()
+      if (process /= 0 .and. process /= current) team = 1
+      if (process == 0 .and. team > 1 .and. n > 1) process = current
+      call new_summary(summary, n, error, team)
       do i = 1, size(columns)
          if (allocated(error)) exit
          places(i) = findloc(summary%quantities%name == fortran(columns(i)), .true., dim=1)
@@ -448,12 +454,6 @@ contains
             end associate
          end do
       end if
-      team = max(1, threads)
-      if (threads == 0) team = default_threads()
-      ! a child of fork does not have the threads of its parent
-      current = getpid()
-      if (process /= 0 .and. process /= current) team = 1
-      if (process == 0 .and. team > 1 .and. n > 1) process = current
 !$omp end critical (vcor_c_api)
       if (allocated(error) .or. n == 0) return
       call solve_points(sweep, team, summary, failures, error)

@@ -373,6 +373,8 @@ contains
       end if
       deallocate (room)
       allocate (self%values(size(self%quantities) - 1))
+      ! the first touch of so much memory takes as long as some per cent of the impacts
+!$omp parallel do default(none) num_threads(max(1, min(team, points))) shared(self, points)
       do i = 1, size(self%values)
          if (self%quantities(i)%is_whole) then
             allocate (self%values(i)%integers(points), source=0)
@@ -380,6 +382,7 @@ contains
             allocate (self%values(i)%reals(points), source=ieee_value(1.0_wp, ieee_quiet_nan))
          end if
       end do
+!$omp end parallel do
       allocate (self%status(points), source=point_pending)
       allocate (self%inexact(points), source=.false.)
    end subroutine new_summary
