@@ -65,6 +65,8 @@ program test_impacts
    call test_set("temperature.txt", 35, 1.2e-11_wp)
    call test_profile()
    call test_stated()
+   call test_hidden_end()
+   call test_kick()
    call test_few_panels()
    call test_receding_plates()
    call test_crude_growth()
@@ -129,6 +131,49 @@ contains
          //"alpha = 1179.9246850715192 /"//new_line("a") &
          //"&material name = 'ball', model = 'rigid' /")
    end subroutine test_stated
+
+   !> A sphere that its weight almost keeps in contact: the force falls below zero for a moment,
+   !> between two stages of a panel. Method direct, which takes short steps, has the same end
+   subroutine test_hidden_end()
+      character(len=*), parameter :: text = &
+         "&impact velocity = 0.05, gravity = 9.81 /"//new_line("a") &
+         //"&sphere radius = 0.02, material = 'ball' /"//new_line("a") &
+         //"&plate material = 'pad', waves = 'none' /"//new_line("a") &
+         //"&contact law = 'boltzmann' /"//new_line("a") &
+         //"&material name = 'ball', model = 'rigid', density = 7800 /"//new_line("a") &
+         //"&material name = 'pad', model = 'prony', density = 1100, poisson_ratio = 0.45, " &
+         //"equilibrium_modulus = 2e5, moduli = 1.53e8, times = 1e-3 /"//new_line("a")
+      real(wp), parameter :: by_direct = 6.1458e-3_wp, near = 1.0e-6_wp
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+
+      call build(row, "hidden end", text)
+      call make_ive(1.0e-8_wp, ive)
+      call ive%solve(row%impact, trajectory, error)
+      call success(error, "an impact with a hidden end is solved")
+      outcome = evaluate(row%impact, trajectory)
+      call check(outcome%status == contact_separated, "a moment without force is an end")
+      call check_difference(abs(outcome%cor_sphere - by_direct), near, "the sphere after it")
+   end subroutine test_hidden_end
+
+   !> Modes that are fast compared with the rebound make a kick at the largest indentation, which
+   !> both solutions of a panel miss alike
+   subroutine test_kick()
+      call check_against_finer("a kick at the largest indentation", &
+         "&impact velocity = 0.1715129628520746 /"//new_line("a") &
+         //"&sphere radius = 0.05278166182244058, material = 'ball' /"//new_line("a") &
+         //"&plate half_thickness = 0.06739849828586751, material = 'plate', " &
+         //"waves = 'relaxing' /"//new_line("a") &
+         //"&contact law = 'receding' /"//new_line("a") &
+         //"&material name = 'plate', density = 901.9352812258772, poisson_ratio = 0.35, " &
+         //"model = 'sls', glassy_modulus = 79735382.89105567, beta = 11583.16735294003, " &
+         //"alpha = 123.40358513953035 /"//new_line("a") &
+         //"&material name = 'ball', model = 'rigid', density = 7800 /"//new_line("a"), &
+         [1.0e-10_wp, 1.0e-11_wp])
+   end subroutine test_kick
 
    !> What an impact differs by from the same at a higher accuracy is stated
    subroutine check_stated(name, asked, text)
