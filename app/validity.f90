@@ -521,8 +521,7 @@ contains
       !> In words; empty if they do, or if the material is not a table
       character(len=:), allocatable :: text
 
-      !> The times that matter, from this fraction of the contact time to the contact time:
-      !> docs/materials.md has the errors of tables that begin later
+      !> Share of the contact time from which on times matter; docs/materials.md has the errors
       real(wp), parameter :: seen_from = 0.001_wp
       character(len=*), parameter :: constant = ', where the modulus is taken as constant'
       class(material_t), allocatable :: material

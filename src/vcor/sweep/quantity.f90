@@ -185,7 +185,7 @@ contains
       call list%add('layer_stiffening', 'F/F_H', '1', &
          'force / force on a half space, on a base', outcome%layer_stiffening)
       call list%add('layer_strain', 's/H', '1', &
-         'indentation of the layer / thickness, on a base', outcome%layer_strain)
+         'indentation / thickness, on a base', outcome%layer_strain)
       call list%add('plate_wave_number', 'kH', '1', 'thickness times wave number at pi/t0', &
          outcome%plate_wave_number)
       call list%add('needed_extent', 'pi/k', 'm', 'nearest edge that does not send waves back', &

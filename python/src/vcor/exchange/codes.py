@@ -227,32 +227,7 @@ def export_pair(
     law: int = 1,
     threads: int | None = None,
 ) -> Export:
-    """Input of another program for the impacts of a case.
-
-    Parameters
-    ----------
-    case
-        The case: a sphere, and a plate or another sphere.
-    target
-        Program: a name of `TARGETS`.
-    velocities
-        Velocities [m/s] that rise, at least 2. The law is also fitted and judged between them.
-    quantity
-        What e is: `cor_sphere` or `cor`; both are the same without waves.
-    master
-        e over (m/sqrt(R v))^(2/5), for a `table`: one curve for all sizes of a pair of materials.
-    law
-        Number of the law in the header of the export, by its misfit; 1: the best one.
-    threads
-        As for `Case.run`.
-
-    Raises
-    ------
-    InputError
-        The program has no such contact.
-    NumericalError
-        An impact has no result.
-    """
+    """Input of another program for the impacts of a case, as `export` describes it."""
     case, given = as_case(case), checked(target, velocities, quantity)
     curve = solved(case, given, quantity, threads)
     if master:
