@@ -205,6 +205,9 @@ def test_the_boxes_of_the_readme(folder):
     assert len(boxes) == 2 and "scripts/run.sh" in install
     for block in (*boxes, first):
         assert block in recipes
+    (pair,) = re.findall(r"^pair_coeff .*$", recipes, re.MULTILINE)
+    shown = re.search(r"# \.\.\. (\S+) (\S+) \.\.\.$", first, re.MULTILINE).groups()
+    assert shown == tuple(f"{float(word):.4g}" for word in pair.split()[4:6])
     (folder / "script.py").write_text(last)
     assert shell(folder, f"{sys.executable} script.py").startswith("[")
 
@@ -228,6 +231,11 @@ def test_the_first_run(folder):
             assert line.split("0.")[0] == other.split("0.")[0]
         else:
             assert line == other
+
+
+def test_the_pendulum_of_the_recipes():
+    """The case that is shown is the example that its commands run."""
+    assert blocks("docs/recipes.md", "fortran") == [text_of("examples/identification/pendulum.nml")]
 
 
 def test_the_case_of_the_page(folder):
