@@ -133,6 +133,11 @@ int vcor_settle(vcor_case *self, vcor_error *error);
 int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                int k, const char *const *columns, double *results, int threads, vcor_error *error);
 
+/* Numbers that look like those in another unit, such as a radius of 15 m: a line for each, of the case and
+ * of the values of n points, which are those of vcor_solve. `*text` is NULL if there is none. */
+int vcor_warnings(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
+                  char **text, vcor_error *error);
+
 /* History of a single impact: `*rows` rows of the columns of VCOR_HISTORY. An impact that does not end
  * in separation has one, too. */
 int vcor_history(vcor_case *self, int *rows, double **values, vcor_error *error);

@@ -64,6 +64,10 @@ def arguments(case):
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "k?": 1, "columns": cor, "results": doubles(0.0), "threads?": 1,
         },
+        "vcor_warnings": {
+            "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
+            "text": byref(text),
+        },
         "vcor_history": {"case": case, "rows": byref(count), "values": byref(text)},
         "vcor_relaxation": {
             "case": case, "material": b"rubber", "n?": 1, "times": doubles(1.0),

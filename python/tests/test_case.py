@@ -1,6 +1,7 @@
 """Cases: the same bits as the program, its errors, threads, processes."""
 
 import concurrent.futures
+import contextlib
 import csv
 import multiprocessing
 import os
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
+import warnings
 from decimal import Decimal
 from fractions import Fraction
 
@@ -427,6 +429,36 @@ def test_other_bytes_than_utf_8_in_a_comment(tmp_path):
     path.write_bytes((PAPER / "sls.nml").read_bytes() + b"! \xb5m\n")
     case = vcor.read(path)
     assert str(case) == str(case.copy()) == str(pickle.loads(pickle.dumps(case)))
+
+
+def test_numbers_in_another_unit(sls):
+    """The sentences of the program, from the case, what was set, and points."""
+
+    def said(use):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            with contextlib.suppress(vcor.NumericalError):
+                use()
+        return [str(one.message) for one in caught if one.category is vcor.UnitWarning]
+
+    assert said(sls.run) == []
+    velocity = "impact.velocity = 1000.0 m/s is more than 300.0: is it in mm/s?"
+    for values in ([1.0, 1000.0], [1000.0, np.nan], [[1000.0]]):
+        points = {"impact.velocity": np.ravel(values)}
+        assert said(lambda points=points: sls.points(points, ["cor"])) == [velocity]
+        assert said(lambda points=points: sls.sweep(points, ["cor"])) == [velocity]
+    assert said(lambda: sls.points({"impact.velocity": []})) == []
+    slow = sls.copy()
+    assert said(lambda: slow.solve({"impact.velocity": 1000.0})) == [velocity]
+    # a loop is looked at once
+    assert said(lambda: slow.solve({"impact.velocity": 1000.0})) == []
+    heavy = vcor.Case(str(sls).replace("radius = 0.01", "radius = 10.0"))
+    line = "case.nml:10: sphere.radius = 10.0 m is more than 1.0: is it in mm?"
+    for use in (heavy.run, heavy.solve, heavy.history, heavy.verify):
+        assert said(use) == [line]
+    heavy["rubber.density"] = 1.2
+    density = "rubber.density = 1.2 kg/m3 is less than 10.0: is it in g/cm3?"
+    assert said(heavy.solve) == [line, density]
 
 
 def test_points_without_a_result(sls):

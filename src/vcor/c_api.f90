@@ -7,14 +7,15 @@ module vcor_c_api
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
       c_loc, c_null_char, c_null_ptr, c_ptr
-   use vcor_c_api_handle, only : build, find_body, find_place, handle_t, open_case
+   use vcor_c_api_handle, only : build, build_points, find_body, find_place, handle_t, open_case, &
+      open_points
    use vcor_c_api_values, only : array_at, c_column_t, c_numbers, c_text, demand, get_array, &
       new_column, put_column, put_copy, put_count, put_error, put_pointer, put_text, refuse_long, &
       report_error
    use vcor_case_address, only : resolve
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group
-   use vcor_case_checks, only : validate
+   use vcor_case_checks, only : implausible_numbers, note_length, validate
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : case_text, value_text
    use vcor_case_problem, only : problem_t
@@ -41,7 +42,7 @@ module vcor_c_api
 
    public :: vcor_library_version, vcor_read, vcor_free, vcor_add_materials, vcor_set, vcor_get, &
       vcor_describe, vcor_case_text, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
-      vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
+      vcor_warnings, vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
 
    !> Tables for `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
@@ -377,22 +378,16 @@ contains
 
       call open_case(self, handle, trouble)
       call check_counts(int(m), int(n), int(k), int(threads), trouble)
-      if (m > 0) call demand(address_list, 'addresses', trouble)
-      if (m > 0 .and. n > 0) call demand(value_table, 'values', trouble)
+      call open_points(m, address_list, n, value_table, addresses, values, trouble)
       if (k > 0) call demand(column_list, 'columns', trouble)
       if (k > 0 .and. n > 0) call demand(result_table, 'results', trouble)
       if (.not. allocated(trouble)) then
-         call c_f_pointer(array_at(address_list, m), addresses, [m])
          call c_f_pointer(array_at(column_list, k), columns, [k])
-         do i = 1, m
-            call demand(addresses(i), 'addresses[i]', trouble)
-         end do
          do i = 1, k
             call demand(columns(i), 'columns[i]', trouble)
          end do
       end if
       if (.not. allocated(trouble)) then
-         call c_f_pointer(array_at(value_table, min(m, n)), values, [m, n])
          call c_f_pointer(array_at(result_table, min(k, n)), results, [k, n])
          call solve_table(handle, addresses, values, columns, int(threads), results, remark, &
             trouble)
@@ -445,15 +440,8 @@ contains
             //shortened(fortran(columns(i)))//"'; " &
             //suggestion(fortran(columns(i)), quantity_names()))
       end do
-      if (.not. allocated(error) .and. n > 0) call build(handle, addresses, values, error)
-      if (.not. allocated(error) .and. n > 0) then
-         sweep = handle%sweep
-         do i = 1, size(sweep%grid%axes)
-            associate (axis => sweep%grid%axes(i))
-               axis%values = values(findloc(handle%built_for == axis%address, .true., dim=1), :)
-            end associate
-         end do
-      end if
+      if (.not. allocated(error) .and. n > 0) &
+         call build_points(handle, addresses, values, sweep, error)
 !$omp end critical (vcor_c_api)
       if (allocated(error) .or. n == 0) return
       call solve_points(sweep, team, summary, failures, error)
@@ -479,6 +467,46 @@ contains
       end if
 !$omp end critical (vcor_c_api)
    end subroutine solve_table
+
+   !> Get the numbers that look like those in another unit
+   function vcor_warnings(self, m, address_list, n, value_table, text, error) bind(c) result(code)
+      type(c_ptr), value :: self
+      integer(c_int), value :: m
+      type(c_ptr), value :: address_list
+      integer(c_int), value :: n
+      type(c_ptr), value :: value_table, text, error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(c_ptr), pointer :: addresses(:)
+      real(c_double), pointer :: values(:, :)
+      type(sweep_t) :: sweep
+      character(len=note_length), allocatable :: notes(:)
+      character(len=:), allocatable :: lines
+      integer :: i
+
+      call put_pointer(text, c_null_ptr)
+      call open_case(self, handle, trouble)
+      call check_counts(int(m), min(int(n), 1), 0, 0, trouble)
+      call open_points(m, address_list, n, value_table, addresses, values, trouble)
+      call demand(text, 'text', trouble)
+      if (.not. allocated(trouble) .and. (m == 0 .or. n > 0)) then
+!$omp critical (vcor_c_api)
+         call build_points(handle, addresses, values, sweep, trouble)
+         if (.not. allocated(trouble)) call implausible_numbers(sweep%case, sweep%grid, notes)
+         if (.not. allocated(notes)) allocate (notes(0))
+         if (size(notes) > 0) then
+            lines = trim(notes(1))
+            do i = 2, size(notes)
+               lines = lines//new_line('a')//trim(notes(i))
+            end do
+            call put_copy(text, c_text(lines), trouble)
+         end if
+!$omp end critical (vcor_c_api)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_warnings
 
    !> Check the numbers of a call of `vcor_solve`
    subroutine check_counts(m, n, k, threads, error)

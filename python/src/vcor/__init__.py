@@ -12,6 +12,7 @@ from ._library import (
     InputError,
     NoResultWarning,
     NumericalError,
+    UnitWarning,
     UsageError,
     __version__,
 )
@@ -39,6 +40,7 @@ __all__ = [
     "Material",
     "NoResultWarning",
     "NumericalError",
+    "UnitWarning",
     "UsageError",
     "__version__",
     "bands",
@@ -58,7 +60,9 @@ __all__ = [
 ]
 
 # Messages of the interpreter name an error as users import it
-for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, UsageError):
+for _kind in (
+    Error, FileError, InputError, NoResultWarning, NumericalError, UnitWarning, UsageError,
+):  # fmt: skip
     _kind.__module__ = "vcor"
 
 #: What needs scipy or reads files, by its module; imported when it is used

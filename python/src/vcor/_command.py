@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
-from ._library import Error, FileError, UsageError, __version__, printable
+from ._library import Error, FileError, UnitWarning, UsageError, __version__, printable
 from ._text import OPTIONS, name_flaw, near
 
 FORMATS = ("svg", "pdf", "png")
@@ -73,9 +73,10 @@ def joined(words: Sequence[str], *names: str) -> list[str]:
     return found
 
 
-def _note(message: Warning | str, *_: Any) -> None:
+def _note(message: Warning | str, category: type[Warning], *_: Any) -> None:
     """Write a warning on one line."""
-    sys.stderr.write(f"vcor: note: {printable(str(message))}\n")
+    kind = "warning" if issubclass(category, UnitWarning) else "note"
+    sys.stderr.write(f"vcor: {kind}: {printable(str(message))}\n")
 
 
 @contextlib.contextmanager

@@ -70,6 +70,10 @@ class NoResultWarning(UserWarning):
     """Some points of a sweep have no result."""
 
 
+class UnitWarning(UserWarning):
+    """A number looks like one in another unit."""
+
+
 class _ErrorStruct(Structure):
     _fields_ = [("code", c_int), ("message", c_char * 2048)]
 
@@ -155,6 +159,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_solve": [
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],
+    "vcor_warnings": [c_void_p, c_int, _texts, c_int, _doubles, POINTER(c_void_p)],
     "vcor_history": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],

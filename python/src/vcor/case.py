@@ -26,6 +26,7 @@ from ._library import (
     InputError,
     NoResultWarning,
     NumericalError,
+    UnitWarning,
     UsageError,
     call,
     encoded,
@@ -145,6 +146,8 @@ class Case:
         self._added: list[tuple[str, str]] = []
         self._settings: dict[str, str] = {}
         self._numbers: dict[str, float] = {}
+        #: Addresses of the points whose units `solve` has looked at
+        self._looked_at: tuple[str, ...] | None = None
 
     def add(self, materials: Case) -> None:
         """Complete the case by &material groups, whose data files stay where they are."""
@@ -157,7 +160,10 @@ class Case:
         call("vcor_set", self._pointer, address, written)
         self._settings = {**self._settings, address: written}
         # a text or a list may set what is known by another address, too
-        self._numbers = {**self._numbers, address: value} if isinstance(value, float) else {}
+        if isinstance(value, float):
+            self._numbers = {**self._numbers, address: value}
+        else:
+            self._numbers, self._looked_at = {}, None
 
     def __getitem__(self, address: str) -> Value | None:
         """Value at an address, given or by default; None if there is none."""
@@ -232,6 +238,7 @@ class Case:
         axes = self._axes()
         if axes:
             return self.sweep(axes, threads=threads, progress=progress)
+        self._warn({})
         names = list(_library.columns(0))
         try:
             values, _ = self._solve([], np.empty((1, 0)), names, 1)
@@ -272,6 +279,9 @@ class Case:
         # numbers that were set go in as those of a point: nothing is checked and built anew then
         point = self._numbers if values is None else scalars(values)
         remark = ""
+        if (addresses := tuple(point)) != self._looked_at:
+            self._warn(point)
+            self._looked_at = addresses
         if point:
             row = np.array([[*point.values()]])
             try:
@@ -319,6 +329,7 @@ class Case:
             if len(array) not in (1, len(given[longest])):
                 raise InputError(f"{address}: found {len(array)} values, and {len(given[longest])} "
                                  f"of {longest}; expected as many, or one")  # fmt: skip
+        self._warn(given)
         columns = np.broadcast_arrays(*given.values())
         names = _names(quantities)
         table = np.stack(columns, axis=1)
@@ -356,6 +367,7 @@ class Case:
         if (count := math.prod(map(len, axes.values()))) > MOST_POINTS:
             raise InputError(f"{self.name}: the grid has {count} points, expected at most "
                              f"{MOST_POINTS}")  # fmt: skip
+        self._warn(axes)
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
         names = _names(quantities)
@@ -379,6 +391,7 @@ class Case:
         InputError
             The case is wrong, or a sweep.
         """
+        self._warn({})
         columns = list(_library.columns(1).values())
         rows, pointer = c_int(), c_void_p()
         call("vcor_history", self._pointer, byref(rows), byref(pointer))
@@ -419,6 +432,7 @@ class Case:
         NumericalError
             The methods contradict each other, or none has a result.
         """
+        self._warn({})
         columns = _library.columns(2)
         names = ("best", "ive", "direct", "digits")
         values = np.empty((len(columns), len(names)))
@@ -457,6 +471,20 @@ class Case:
         remark = call("vcor_solve", self._pointer, len(addresses), given, len(values), values,
                       len(names), wanted, results, threads)  # fmt: skip
         return results, remark
+
+    def _warn(self, points: Mapping[str, ArrayLike]) -> None:
+        """Warn of numbers of the case and of points that look like those in another unit."""
+        ends = [
+            [end.reduce(np.ravel(one), initial=np.nan) for one in points.values()]
+            for end in (np.fmin, np.fmax)
+        ]
+        given, found = _library.texts(tuple(points)), c_void_p()
+        # what is wrong is refused by the solution
+        with contextlib.suppress(Error):
+            call("vcor_warnings", self._pointer, len(points), given, 2, np.array(ends),
+                 byref(found))  # fmt: skip
+        for line in (_library.take_text(found) or "").splitlines():
+            warnings.warn(line, UnitWarning, stacklevel=3)
 
     def _settled(self, addresses: Sequence[str], values: Floats) -> Case:
         """A copy with values, of which all is solved on the mesh that suits it, for differences."""

@@ -1,8 +1,8 @@
 !> The target of a `vcor_case` of the C interface: a case, and what has been built for its impacts
 module vcor_c_api_handle
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use, intrinsic :: iso_c_binding, only : c_associated, c_f_pointer, c_ptr
-   use vcor_c_api_values, only : demand
+   use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_f_pointer, c_int, c_ptr
+   use vcor_c_api_values, only : array_at, demand
    use vcor_case_address, only : material_names, resolve, swept_addresses
    use vcor_case_body, only : material_of_case
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
@@ -20,7 +20,7 @@ module vcor_c_api_handle
    implicit none
    private
 
-   public :: handle_t, open_case, find_place, build, find_body
+   public :: handle_t, open_case, open_points, find_place, build, build_points, find_body
 
    !> Target of a `vcor_case`
    type :: handle_t
@@ -51,6 +51,30 @@ contains
          call raise(error, error_usage, 'the case is NULL: vcor_read has not made one')
       end if
    end subroutine open_case
+
+   !> Get the addresses and values of points, as arguments have them
+   subroutine open_points(m, address_list, n, value_table, addresses, values, error)
+      !> Numbers of addresses and of points
+      integer(c_int), intent(in) :: m, n
+      type(c_ptr), intent(in) :: address_list, value_table
+      !> Shapes (m) and (m, n)
+      type(c_ptr), pointer, intent(out) :: addresses(:)
+      real(c_double), pointer, intent(out) :: values(:, :)
+      !> An earlier error, which is kept, or one of code `error_usage`; unallocated on success
+      type(error_t), allocatable, intent(inout) :: error
+
+      integer :: i
+
+      nullify (addresses, values)
+      if (m > 0) call demand(address_list, 'addresses', error)
+      if (m > 0 .and. n > 0) call demand(value_table, 'values', error)
+      if (allocated(error)) return
+      call c_f_pointer(array_at(address_list, m), addresses, [m])
+      call c_f_pointer(array_at(value_table, min(m, n)), values, [m, n])
+      do i = 1, m
+         call demand(addresses(i), 'addresses[i]', error)
+      end do
+   end subroutine open_points
 
    !> Find the place of an address in a case
    subroutine find_place(case, address, place, error)
@@ -141,6 +165,29 @@ contains
       end if
       handle%built_for = places
    end subroutine build
+
+   !> Build the impacts of points
+   subroutine build_points(handle, addresses, values, sweep, error)
+      !> The case
+      type(handle_t), intent(inout) :: handle
+      !> Addresses with values for each point, shape (m)
+      type(c_ptr), intent(in) :: addresses(:)
+      !> Values, shape (m, n)
+      real(wp), intent(in) :: values(:, :)
+      type(sweep_t), intent(out) :: sweep
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      call build(handle, addresses, values, error)
+      if (allocated(error)) return
+      sweep = handle%sweep
+      do i = 1, size(sweep%grid%axes)
+         associate (axis => sweep%grid%axes(i))
+            axis%values = values(findloc(handle%built_for == axis%address, .true., dim=1), :)
+         end associate
+      end do
+   end subroutine build_points
 
    !> Build a material of a case
    subroutine find_body(self, name, material, error)

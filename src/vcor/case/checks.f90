@@ -2,6 +2,7 @@
 !> references to nothing), and numbers that are probably in another unit. Constructors check numbers
 !> that depend on each other
 module vcor_case_checks
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_address, only : material_names, swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
@@ -421,7 +422,7 @@ contains
 
    !> Notes about implausible numbers of a case
    subroutine implausible_numbers(case, grid, notes)
-      !> A validated case, its data read
+      !> A validated case, its data read; values of the grid count in the place of its own
       type(case_t), intent(in) :: case
       !> Grid of the sweep
       type(grid_t), intent(in) :: grid
@@ -450,7 +451,8 @@ contains
                do axis = 1, size(grid%axes)
                   if (grid%axes(axis)%address%row /= row &
                       .or. grid%axes(axis)%address%item /= item) cycle
-                  values = grid%axes(axis)%values
+                  ! points of other programs may have any numbers
+                  values = pack(grid%axes(axis)%values, ieee_is_finite(grid%axes(axis)%values))
                   place = case%location('sweep', 'parameter', axis)
                end do
                if (size(values) > 0) call judge(limits(i), case%path(address))
@@ -487,7 +489,9 @@ contains
                //': '//limit%above
          end if
          if (note == '') return
-         note = place//': '//name//' = '//note
+         note = name//' = '//note
+         ! a value that was set has its address as its place
+         if (place /= name) note = place//': '//note
          notes = [notes, note]
       end subroutine judge
    end subroutine implausible_numbers

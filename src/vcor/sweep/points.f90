@@ -45,7 +45,7 @@ module vcor_sweep_points
       !> Grid of its points
       type(grid_t) :: grid
       !> The case, with the first valid value of each parameter that varies
-      type(case_t), private :: case
+      type(case_t) :: case
       !> Problem of this case
       type(problem_t) :: problem
       !> Valid ranges of the parameters that vary, shape (axes)
