@@ -218,12 +218,12 @@ contains
          reason = 'give a longer solver.end_time'
          if (job%method == 'direct') reason = reason//'; a contact shorter than the ' &
             //'steps is missed, give a shorter solver.time_step'
-         if (gave_up) reason = 'a contact this long has too many steps to go on to solver.end_time'
+         if (gave_up) reason = 'a contact this long needs too many steps to reach solver.end_time'
          if (too_light /= '' .and. .not. was_short) reason = too_light
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
             //'within '//time//' s: '//reason)
       else
-         reason = 'the losses in the material leave no rebound'
+         reason = 'the material dissipates all the energy of the impact'
          if (.not. job%sweep%problem%impact%modulus%rubbery() > 0.0_wp) &
             reason = 'the material, without equilibrium modulus, does not push it back'
          if (too_light /= '') reason = too_light

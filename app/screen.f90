@@ -56,7 +56,7 @@ contains
 
       text = heading(filename, title)
       if (outcome%status /= contact_separated) then
-         text = text//'  the bodies are in contact still at '//short(time)//' s ('//method//', ' &
+         text = text//'  the bodies are still in contact at '//short(time)//' s ('//method//', ' &
             //integer_text(outcome%steps)//' steps), status '//trim(status_name(outcome%status))//nl
       else
          text = text//answer(outcome, exact)//nl

@@ -187,7 +187,7 @@ contains
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"
             case ('needed_extent')
-               words = 'waves come back from the edge at plate.extent = ' &
+               words = 'waves return from the edge at plate.extent = ' &
                   //brief(surroundings%extent)//' m; good from '//brief(surroundings%extent*value &
                   /thresholds(measure)%caution)//' m on'
             case ('deflection_ratio')
@@ -205,8 +205,8 @@ contains
             case ('energy_loss')
                words = gain()
             case default
-               words = 'a thick plate takes up '//percent(value) &
-                  //" of the energy more than is computed; compare waves = 'body'"
+               words = 'a thick plate absorbs about '//percent(value) &
+                  //" of the energy, which is not computed; compare waves = 'body'"
             end select
          end associate
       end function sentence
@@ -217,13 +217,13 @@ contains
 
          if (outcome%cor_sphere > 1.0_wp .and. outcome%energy_loss >= 0.0_wp) then
             words = 'the sphere leaves faster than it came: its weight did more work than the ' &
-               //'contact took'
+               //'contact dissipated'
          else if (outcome%cor_sphere <= 1.0_wp .and. outcome%energy_loss >= 0.0_wp) then
-            words = 'the bodies separate faster than they met, as the plate still moves; ' &
+            words = 'the bodies separate faster than they met, because the plate still moves; ' &
                //"compare waves = 'body'"
          else
-            words = 'the sphere gains energy, which this model of the plate makes from ' &
-               //"nothing; compare waves = 'body'"
+            words = 'the sphere gains energy, which no plate supplies: this model of the ' &
+               //"plate does not hold; compare waves = 'body'"
          end if
       end function gain
    end function measures_report
@@ -546,7 +546,7 @@ contains
             //trim(merge('shortest contact', 'contact         ', some))//' lies before'//constant
          if (some .and. unseen > 0) before = 'begin at '//short(first)//' s: ' &
             //integer_text(unseen)//' of '//integer_text(size(contacts)) &
-            //' contacts lie wholly before'//constant
+            //' contacts lie entirely before'//constant
          if (last < longest) after = 'end at '//short(last)//' s: ' &
             //percent(1.0_wp - last/longest)//' of the ' &
             //trim(merge('longest contact', 'contact        ', some))//' lies after'//constant
@@ -665,7 +665,7 @@ contains
                text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
                   //significant(cor, 5, 0)//' to ' &
                   //significant(cor + found%held - found%cor, 5, 0) &
-                  //': so much rests on the extrapolation of the fit'
+                  //': that much depends on the extrapolation of the fit'
             else
                text = text//'it has no result'
             end if

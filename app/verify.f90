@@ -155,7 +155,7 @@ contains
       integer :: i
 
       text = '  effect of the choice of model; * marks that of the case; half_space is body ' &
-         //'without a back'//nl &
+         //'without a thickness'//nl &
          //'  '//padded('waves', 10)//'  '//padded('law', 9)//right('cor', 16) &
          //right('cor_sphere', 16)//right('contact_time [s]', 18) &
          //right('residual_indentation [m]', 26)//nl

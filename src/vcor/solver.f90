@@ -75,7 +75,7 @@ contains
          call refuse("the second term of the Volterra series is solved by method = 'direct' only", &
             'volterra_order volterra_coefficient method')
       else if (settings%method == 'ive' .and. settings%ghost) then
-         call refuse("only method = 'direct' goes on after the separation", &
+         call refuse("only method = 'direct' continues after the separation", &
             'continue_after_separation method')
       else if (settings%method == 'ive' .and. impact%plate%frozen()) then
          call refuse("waves = 'frozen' are solved by method = 'direct' only", 'waves method')
@@ -92,7 +92,7 @@ contains
          call refuse('adams_bashforth sums the force over all the past, receding contact does ' &
             //"not; use method = 'ive', or 'direct' with scheme = 'product'", 'law scheme')
       else if (impact%law%receding .and. settings%ghost) then
-         call refuse('nothing is left of a receding contact at separation: going on has no ' &
+         call refuse('nothing is left of a receding contact at separation: continuing has no ' &
             //'meaning', 'law continue_after_separation')
       else if (impact%gravity > 0.0_wp .and. .not. is_product) then
          call refuse("adams_bashforth marches the paper's wave equation, without a weight; use " &
@@ -137,7 +137,7 @@ contains
             'scheme method waves')
       else if (settings%ghost) then
          call raise(error, error_input, 'nothing is left of a coupled contact at separation: ' &
-            //'going on has no meaning', 'continue_after_separation method waves')
+            //'continuing has no meaning', 'continue_after_separation method waves')
       end if
    end subroutine check_coupled
 

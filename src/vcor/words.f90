@@ -23,8 +23,8 @@ module vcor_words
    !> The names of which there is more to say than another name
    type(gone_t), parameter :: gone(*) = [ &
       gone_t('footprint', "waves = 'body' solves the contact itself: remove it"), &
-      gone_t('shore', 'a hardness is not a modulus, vcor help hardness says more'), &
-      gone_t('hardness', 'a hardness is not a modulus, vcor help hardness says more'), &
+      gone_t('shore', 'a hardness is not a modulus, see vcor help hardness'), &
+      gone_t('hardness', 'a hardness is not a modulus, see vcor help hardness'), &
       gone_t('footprint_effect', "waves = 'body' solves the contact itself: remove it")]
 
    !> A name that the field has for a word of input or output

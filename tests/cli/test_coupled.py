@@ -174,7 +174,7 @@ def test_an_end_time_that_is_out_of_reach(vcor):
     vcor.write(case)
     done = vcor("run", "case.nml")
     assert done.code == NUMERICAL
-    assert "too many steps to go on to solver.end_time" in done.err
+    assert "too many steps to reach solver.end_time" in done.err
 
 
 def test_verify_compares_two_meshes(vcor):

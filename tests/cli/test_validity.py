@@ -422,7 +422,7 @@ SLIPS = [
     ("bearing_steel.density=7.8e6", "is it in g/m3?"),
     ("bearing_steel.modulus=210", "is it in kPa, MPa or GPa?"),
     ("float_glass.modulus=1.9e12", None),
-    ("float_glass.modulus=70e12", "has it a power of ten too many?"),
+    ("float_glass.modulus=70e12", "is the power of ten right?"),
     ("float_glass.poisson_ratio=-0.2", "is the sign right?"),
 ]
 

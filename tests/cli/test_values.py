@@ -401,7 +401,7 @@ def test_stem_with_a_folder(vcor, value):
     [
         ("plate", "waves", "'frozen'", "waves = 'frozen' are solved by method = 'direct' only"),
         ("solver", "volterra_order", "2", "the second term of the Volterra series is solved by method = 'direct' only"),
-        ("solver", "continue_after_separation", ".true.", "only method = 'direct' goes on after the separation"),
+        ("solver", "continue_after_separation", ".true.", "only method = 'direct' continues after the separation"),
     ],
 )
 def test_rare_values(vcor, group, key, value, says):

@@ -786,7 +786,7 @@ def _adjust(made: Figure, wishes: _Wishes) -> None:
                 (low, high), ends = sorted(which.get_view_interval()), which.get_data_interval()
                 if high < min(ends) or low > max(ends):
                     raise UsageError(
-                        f"{option('ranges', {letter: (low, high)})}: nothing is there, "
+                        f"{option('ranges', {letter: (low, high)})}: no data in it, "
                         f"{letter} is {which.label.get_text()} from {min(ends):.4g} to "
                         f"{max(ends):.4g}"
                     )
@@ -883,7 +883,7 @@ def _parser() -> _command.Parser:
     add("--format", choices=FORMATS, help="format in a folder; default: svg")
     add("--script", action="store_true", help="leave the Python script that makes the figure")
     add_data_options(parser)
-    add("--quiet", action="store_true", help="say nothing of what is written")
+    add("--quiet", action="store_true", help="do not report what is written")
     return parser
 
 
@@ -939,7 +939,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         usual = f"{Path(first).stem}_{options.kind or Result(first).kind()}"
         path = _text.place(options.output, usual, FORMATS, options.format, options.files)
         if options.script and path.stem in sys.modules:
-            raise UsageError(f"a script {path.stem}.py would stand in the way of the package "
+            raise UsageError(f"a script {path.stem}.py would hide the package "
                              f"{path.stem}, expected another --output")  # fmt: skip
         save(made, path)
         written = [path]

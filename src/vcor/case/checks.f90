@@ -65,7 +65,7 @@ module vcor_case_checks
       limits_t('material', 'reference_temperature', 'K', coldest, endless, celsius, ''), &
       limits_t('material', 'valid_temperature_from', 'K', coldest, endless, celsius, ''), &
       limits_t('material', '', 'Pa', 1.0e3_wp, 2.0e12_wp, 'is it in kPa, MPa or GPa?', &
-      'has it a power of ten too many?'), &
+      'is the power of ten right?'), &
       limits_t('material', '', 'kg/m3', 10.0_wp, 3.0e4_wp, 'is it in g/cm3?', 'is it in g/m3?'), &
       limits_t('material', 'poisson_ratio', '', 0.0_wp, 0.5_wp, 'is the sign right?', ''), &
       limits_t('material', '', 's', 1.0e-13_wp, endless, 'is it a rate, or in another unit?', ''), &

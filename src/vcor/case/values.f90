@@ -321,7 +321,7 @@ contains
             //real_text(entry%number)//' C is ' &
             //real_text(anint(100.0_wp*entry%number + 27315.0_wp)/100.0_wp)//' K'
          if (.not. is_computable(entry%number)) message = message//', between 1e-60 and 1e60 in ' &
-            //'magnitude: beyond that nothing can be computed'
+            //'magnitude: outside of that nothing can be computed'
       else if (key%choices /= '' .and. len_trim(entry%text) > 1) then
          ! a single letter is near any other
          if (nearest_name(entry%text, trim(key%choices)) /= '') message = message &

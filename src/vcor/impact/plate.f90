@@ -94,15 +94,15 @@ contains
             //"material; use waves = 'none' for a half space", about='density')
       else if (max(half_thickness, material%density()) > largest &
                .or. min(half_thickness, material%density()) < 1.0_wp/largest) then
-         call raise(error, error_input, 'half_thickness or density of the plate are beyond all ' &
-            //'that can be computed', about='half_thickness density')
+         call raise(error, error_input, 'half_thickness or density of the plate is out of the ' &
+            //'range that can be computed', about='half_thickness density')
       else if (.not. material%glassy() > 0.0_wp .and. waves < waves_hereditary) then
          call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
             //'a dashpot: its modulus is 0 and its deflection infinite', &
             about='waves equilibrium_modulus')
       else if (waves == waves_constant .and. material%glassy() > huge(1.0_wp)) then
-         call raise(error, error_input, 'the plate keeps the modulus that it has at first, ' &
-            //'which for this material is infinite, and would not move; use ' &
+         call raise(error, error_input, 'the plate keeps its modulus at t = 0, which for ' &
+            //'this material is infinite, so it would not move; use ' &
             //"waves = 'relaxing', 'hereditary' or 'body', or 'none' for a half space", &
             about='waves')
       end if

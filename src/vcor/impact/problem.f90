@@ -130,14 +130,14 @@ contains
       else if (max(velocity, mass, factor**2) > largest &
                .or. min(velocity, mass, factor**2) < 1.0_wp/largest) then
          call raise(error, error_input, &
-            'velocity, mass or radius of the sphere are beyond all that can be computed', &
+            'velocity, mass or radius of the sphere is out of the range that can be computed', &
             about='velocity mass radius')
       end if
       self%gravity = 0.0_wp
       if (present(gravity)) self%gravity = gravity
       if (.not. ieee_is_finite(self%gravity)) self%gravity = -1.0_wp
       if (self%gravity < 0.0_wp .or. self%gravity > largest) call raise(error, error_input, &
-         'gravity must not be negative, nor beyond all that can be computed', about='gravity')
+         'gravity must not be negative, nor out of the range that can be computed', about='gravity')
       if (allocated(error)) return
       self%velocity = velocity
       self%mass = mass

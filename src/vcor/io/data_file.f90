@@ -376,8 +376,8 @@ contains
          else if (.not. point(2) <= before(2)*(1.0_wp + modulus_rounding)) then
             message = 'found modulus '//real_text(point(2))//' after '//real_text(before(2)) &
                //' in line '//integer_text(lines(n - 1))//', expected moduli that fall: a ' &
-               //'relaxation modulus never grows with time; for data with noise identify a ' &
-               //'model by vcor fit'
+               //'relaxation modulus never grows with time; for data with noise fit a model ' &
+               //'with vcor fit'
          end if
       end associate
    end subroutine check_point

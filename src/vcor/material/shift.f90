@@ -120,7 +120,7 @@ contains
          end select
          if (.not. abs(decades) <= farthest) then
             call raise(error, error_input, 'expected a shift factor a_T between 1e-60 and 1e60, ' &
-               //'beyond which nothing can be computed'//trim(hint), &
+               //'outside of which nothing can be computed'//trim(hint), &
                about='temperature reference_temperature')
             return
          end if

@@ -195,7 +195,7 @@ contains
                call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
                   //'solver.accuracy, '//as_text(self%settings%accuracy)//', by ' &
                   //as_text(cor_error - self%settings%accuracy)//' with '//steps_text(level) &
-                  //' steps, and more are not worth it: give a larger one')
+                  //' steps, and more steps would take too long: give a larger one')
                return
             end if
          end if

@@ -135,8 +135,8 @@ contains
          end if
          if (outcome%status == contact_resting) return
          if (.not. outcome%is_finite()) then
-            call raise(error, error_numerical, 'the numbers of this impact are beyond all that ' &
-               //'can be computed')
+            call raise(error, error_numerical, 'the numbers of this impact are out of the ' &
+               //'range that can be computed')
          else if (trajectory%misses_by_far()) then
             call raise(error, error_numerical, 'the estimated error of cor, ' &
                //as_text(max(outcome%cor_error, outcome%cor_sphere_error)) &
@@ -184,8 +184,8 @@ contains
       lambda = impact%inelasticity_at(pi/(impact%law%contact_time*impact%time_scale()))
       if (.not. lambda > light) return
       text = 'the plate is too light: with an inelasticity lambda of '//as_text(lambda) &
-         //' by the storage modulus it takes up the blow, and about 0.68/lambda^5 = ' &
-         //as_text(share/lambda**5)//' of the velocity comes back; take a larger ' &
+         //' by the storage modulus it absorbs the impact, and about 0.68/lambda^5 = ' &
+         //as_text(share/lambda**5)//' of the velocity remains; take a larger ' &
          //'plate.half_thickness or a lighter sphere'
    end function light_plate
 

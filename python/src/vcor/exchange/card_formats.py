@@ -114,7 +114,7 @@ class Card:
         if celsius:
             if self.shift.get("shift") != "wlf":
                 raise UsageError(f"{self.name}: {option('celsius', True)} is for the WLF shift, "
-                                 "expected it without: temperatures in kelvin")  # fmt: skip
+                                 "expected kelvin, without it")  # fmt: skip
             shifted = {"reference_temperature": self.constants[0] - ZERO_C}
             card = dataclasses.replace(card, shift={**card.shift, **shifted})
         if flaw := form.flaw(self):

@@ -45,7 +45,7 @@ COLUMNS = ("cor", "cor_sphere", "cor_error", "cor_sphere_error", "contact_time",
 #: What e is, and where its end of contact is
 MEANING = {
     "cor_sphere": "speed of the sphere away from the plate at rest, divided by that towards it",
-    "cor": "relative speed of the bodies after over before",
+    "cor": "relative speed of the bodies after the impact, divided by that before",
 }
 #: Steps of a contact that are advised, and contacts that an input runs
 STEPS, RUNS = 400, 3

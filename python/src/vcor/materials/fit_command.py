@@ -78,7 +78,7 @@ class Sampled:
             if case[f"{name.replace(' ', '_')}.model"] in ("rigid", "elastic"):
                 name = str(case["sphere.material"])
         if self.value("model", name) in ("rigid", "elastic"):
-            raise InputError(f"{self.path}: the material '{name}' does not relax: nothing is there "
+            raise InputError(f"{self.path}: the material '{name}' does not relax: there is nothing "
                              "to be fitted")  # fmt: skip
         viscosity = self.value("viscosity", name)
         if isinstance(viscosity, float) and viscosity > 0:
@@ -182,7 +182,7 @@ def remarks(fit: Fit, source: str) -> str:
     if not fit.follows:
         lines.append(SYSTEMATIC)
     if fit.is_open:
-        lines.append(f"equilibrium_modulus is not seen: 0 to {_short(_upper(fit))} Pa")
+        lines.append(f"the data do not reach equilibrium_modulus: 0 to {_short(_upper(fit))} Pa")
     lines += _hidden(fit)
     lines += [
         f"{one.label} is at its bound: {_short(one.value)} +- {_short(one.error)} {one.unit}"
@@ -233,7 +233,7 @@ def _line(fit: Fit, one: Parameter) -> str:
     if one.state == "fixed":
         return f"{text}given"
     if one is fit.parameters[0] and fit.is_open:
-        return f"{text}not seen: 0 to {_short(_upper(fit))}"
+        return f"{text}not reached: 0 to {_short(_upper(fit))}"
     text += f"+- {_short(one.error)}" + ", at its bound" * (one.state == "bound")
     # not even the order of magnitude is known; for a value of 0 the error is a limit
     if 0 < one.value <= one.error:

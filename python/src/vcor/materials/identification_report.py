@@ -72,7 +72,7 @@ def report(found: Identification) -> str:
         for (text, error), value in zip(found.combinations, found.eigenvalues, strict=True)
     ]
     low, high = found.window
-    seen = f"the data see the material from {low:.2g} to {high:.2g} s"
+    seen = f"the data cover the material from {low:.2g} to {high:.2g} s"
     materials = materials_of([one.address for one in found.estimates])
     if len(materials) == 1 and found.case[f"{materials[0]}.shift"] is not None:
         kelvin = number(found.case, f"{materials[0]}.reference_temperature")

@@ -308,7 +308,7 @@ def fit_law(model: str, fixed: Mapping[str, float], samples: Samples) -> tuple[L
     problem = LawProblem(model, fixed, samples)
     trials = [problem.minimize(problem.variables(start)) for start in problem.starts()]
     if not trials:
-        raise NumericalError(f"model {model} has no likeness to the data")
+        raise NumericalError(f"model {model} does not resemble the data")
     x, squares, converged = min(trials, key=lambda one: one[1])
     problem.values = problem.all(x)
     converged = _follow_bounds(problem, squares) and converged

@@ -264,7 +264,7 @@ contains
          ! the velocity of the sphere is lost in the rounding error of s'
          if (.not. abs(run%speed)*epsilon(1.0_wp) < impact%free_velocity(run%motion%t)) then
             call raise(error, error_numerical, 'fixed steps do not follow this plate: its motion ' &
-               //'grows beyond all bounds')
+               //'grows without bound')
             return
          end if
          node = state_of(run, impact)
