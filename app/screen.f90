@@ -33,8 +33,8 @@ module vcor_app_screen
       'layer_strain']), &
       block_t('force', [character(len=20) :: 'max_force', 'mean_pressure', 'layer_stiffening', &
       '', '', '', '']), &
-      block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', 'loss_tangent', &
-      'min_frequency', 'inelasticity', '', '', ''])]
+      block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', &
+      'peak_storage_modulus', 'loss_tangent', 'min_frequency', 'inelasticity', '', ''])]
 
 contains
 

@@ -64,10 +64,8 @@ contains
          //': the second body is a sphere, and mass is not given: the mass is that of &sphere ' &
          //'alone, '//short(sweep%problem%impact%mass)//' kg, as if the second one could not ' &
          //'move; two free spheres need their reduced mass, m1 m2/(m1 + m2)'
-      if (case%given('impact', 'temperature')) return
-      do i = 1, size(sweep%grid%axes)
-         if (sweep%grid%axes(i)%name == 'impact.temperature') return
-      end do
+      if (case%given('impact', 'temperature') .or. any(swept_addresses(case) &
+         == case%address('impact', 'temperature'))) return
       do i = 1, case%count('material')
          if (.not. case%given('material', 'shift', i)) cycle
          call case%get('material', 'name', name, i)
@@ -147,12 +145,13 @@ contains
       values = judged(outcome, surroundings)
       good = ''
       do i = 1, size(thresholds)
-         if (level_of(i, values(i)) == level_good) good = good//', '//measure_text(outcome, i)
+         if (level_of(i, values(i)) == level_good) good = good//', ' &
+            //measure_text(outcome, i, values(i))
       end do
       do level = level_outside, level_caution, -1
          do i = 1, size(thresholds)
             if (level_of(i, values(i)) == level) text = text//'    '//trim(levels(level))//': ' &
-               //measure_text(outcome, i)//': '//sentence(i)//nl
+               //measure_text(outcome, i, values(i))//': '//sentence(i)//nl
          end do
       end do
       if (good /= '') text = text//'    good: '//good(3:)//nl
@@ -243,7 +242,8 @@ contains
       if (outcome%validity <= level_good) return
       values = judged(outcome, surroundings)
       do i = 1, size(thresholds)
-         if (level_of(i, values(i)) > level_good) text = text//', '//measure_text(outcome, i)
+         if (level_of(i, values(i)) > level_good) text = text//', ' &
+            //measure_text(outcome, i, values(i))
       end do
       text = 'validity '//trim(levels(outcome%validity))//': '//text(3:)
    end function measures_remark
@@ -449,16 +449,20 @@ contains
       text = text(3:)
    end function place_of
 
-   !> A measure and its value
-   function measure_text(outcome, measure) result(text)
+   !> A measure and its value, for the contact ratio also what is judged in its place
+   function measure_text(outcome, measure, value) result(text)
       type(outcome_t), intent(in) :: outcome
       !> Index of the measure in `thresholds`
       integer, intent(in) :: measure
+      !> Value that is judged
+      real(wp), intent(in) :: value
       !> Such as `contact_ratio 0.67`
       character(len=:), allocatable :: text
 
       text = trim(thresholds(measure)%measure)
       text = text//' '//brief(quantity_value(outcome, text))
+      if (thresholds(measure)%measure == 'contact_ratio' .and. value > outcome%contact_ratio) &
+         text = text//" (three times the sphere's share: "//brief(value)//')'
    end function measure_text
 
    !> A number with three digits
@@ -495,13 +499,10 @@ contains
       integer, intent(in) :: item
 
       character(len=:), allocatable :: name, words
-      integer :: i
 
       if (size(grid%axes) == 0) return
-      do i = 1, size(grid%axes)
-         if (grid%axes(i)%name == 'impact.temperature' &
-             .and. case%given('material', 'shift', item)) return
-      end do
+      if (case%given('material', 'shift', item) .and. any(swept_addresses(case) &
+         == case%address('impact', 'temperature'))) return
       call case%get('material', 'name', name, item)
       words = beyond_data(case, item, "'"//printable(name)//"'", &
          pack(summary%values(quantity_place('contact_time'))%reals, &
@@ -576,8 +577,7 @@ contains
       allocate (temperatures(count([.not. ieee_is_nan(given)])))
       temperatures = given
       do i = 1, size(grid%axes)
-         if (grid%axes(i)%address == address) &
-            temperatures = grid%axes(i)%values
+         if (grid%axes(i)%address == address) temperatures = grid%axes(i)%values
       end do
       band = ''
       ends = [-huge(given), huge(given)]

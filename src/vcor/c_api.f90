@@ -42,7 +42,8 @@ module vcor_c_api
 
    public :: vcor_library_version, vcor_read, vcor_free, vcor_add_materials, vcor_set, vcor_get, &
       vcor_describe, vcor_case_text, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
-      vcor_warnings, vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
+      vcor_warnings, vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, &
+      vcor_verify
 
    !> Tables for `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2

@@ -54,6 +54,7 @@ NAMES = [
     "half_space_loss",
     "bending_loss",
     "peak_loss_tangent",
+    "peak_storage_modulus",
     "validity",
     "validity_cause",
     "steps",

@@ -44,6 +44,7 @@ def test_elastic_plate(vcor):
         # the largest force of an elastic contact is that of the largest indentation
         "mean_pressure": row["max_force"] / (math.pi * radius**2),
         "peak_loss_tangent": 0.0,
+        "peak_storage_modulus": 1 / (1 / sphere + 1 / plate),
     }
     # the polynomials between the nodes are as accurate as the solution, 1e-8
     for name, value in expected.items():
@@ -303,6 +304,12 @@ def test_every_sentence(vcor):
     slow = ["--set", "impact.velocity=1e-2", "--set", "plate.half_thickness=2e-3"]
     out = screen(vcor, SLS, *slow)
     assert re.search(r"^    \w+: weight_ratio .*gravity", out, re.MULTILINE)
+    # of a sphere that deforms the number that is judged, not the column
+    found = re.search(r"caution: contact_ratio (\S+) \(three times the sphere's share: (\S+)\): the sphere",
+                      screen(vcor, BEADS, "--set", "impact.velocity=20"))
+    assert float(found[1]) < LIMITS["contact_ratio"][0] <= float(found[2]) < LIMITS["contact_ratio"][1]
+    # both spheres are the same: half of the compliance is that of each
+    assert float(found[2]) == pytest.approx(1.5 * float(found[1]), rel=5e-3)
     thin = ["--set", "plate.half_thickness=5e-4", "--set", "impact.velocity=100"]
     out = screen(vcor, GLASS, *thin)
     assert re.search(r"^    \w+: deflection_ratio .*thicker plate$", out, re.MULTILINE)

@@ -36,6 +36,7 @@ SUMMARY = {
     "half_space_loss": "1",
     "bending_loss": "1",
     "peak_loss_tangent": "1",
+    "peak_storage_modulus": "Pa",
     "validity": "",
     "validity_cause": "",
     "steps": "1",

@@ -116,7 +116,8 @@ module vcor_case_choices
          //'identify reads them as data.'), &
       topic_t(' tan_delta damping ', &
          'The loss tangent: column peak_loss_tangent at pi/t0, which decides the loss, ' &
-         //'loss_tangent at 2 pi/t0; vcor material gives it over frequency.'), &
+         //'loss_tangent at 2 pi/t0; peak_storage_modulus is the storage modulus at pi/t0. ' &
+         //'vcor material gives all over frequency.'), &
       topic_t(' dma tts ', &
          'impact.temperature shifts the times of a material with a shift; vcor master ' &
          //'and vcor fit make one from DMA data at several temperatures.'), &

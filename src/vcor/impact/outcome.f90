@@ -110,6 +110,8 @@ module vcor_impact_outcome
       real(wp) :: bending_loss = none
       !> Loss tangent of the contact modulus at pi/t0 [-]
       real(wp) :: peak_loss_tangent = none
+      !> Storage modulus of the contact at pi/t0 [Pa]
+      real(wp) :: peak_storage_modulus = none
       !> One of the `level_*` constants of `vcor_impact_validity`
       integer :: validity = 0
       !> Index in `thresholds` of the decisive measure; 0: none

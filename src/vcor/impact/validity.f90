@@ -159,6 +159,7 @@ contains
       outcome%mean_pressure = outcome%max_force/(pi*force_radius**2)
       modulus = impact%modulus%dynamic_modulus(frequency)
       outcome%peak_loss_tangent = aimag(modulus)/real(modulus, wp)
+      outcome%peak_storage_modulus = real(modulus, wp)
       plate_modulus = 0.0_wp
       if (.not. plate%rigid) plate_modulus = plate%complex_modulus(cmplx(0.0_wp, frequency, wp))
       share = plate_share(sphere, plate, plate_modulus, frequency)

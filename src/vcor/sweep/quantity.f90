@@ -202,6 +202,8 @@ contains
          'share that bending takes, not computed', outcome%bending_loss)
       call list%add('peak_loss_tangent', 'tan(d)_p', '1', 'loss tangent at pi/t0', &
          outcome%peak_loss_tangent)
+      call list%add('peak_storage_modulus', "E'_p", 'Pa', &
+         'storage modulus of the contact at pi/t0', outcome%peak_storage_modulus)
       call list%add('validity', '', '', 'whether the model holds: the worst of the measures', &
          real(outcome%validity, wp), labels=levels, first=level_none)
       call list%add('validity_cause', '', '', 'measure that decides on validity', &
