@@ -30,7 +30,7 @@ module vcor_app_help
       " KE_1 ", " exponentials kernel ", " +- "]
    character(len=*), parameter :: screen_meanings(size(screen_words)) = [character(len=480) :: &
       "left to the sphere: its kinetic energy after the impact, KE_0 cor_sphere^2 [J]", &
-      "'kernel as a sum of 98 exponentials, to 1.0E-10': method ive writes a relaxation modulus " &
+      "'kernel as a sum of 35 exponentials, to 6.0E-10': method ive writes a relaxation modulus " &
       //"with a continuous spectrum (power law, CERF, Mittag-Leffler, tables, some pairs) as a " &
       //"sum of exponentials. Their number follows from solver.accuracy. The second number is " &
       //"the largest relative error of the sum over the contact time; cor_error includes it. A " &
