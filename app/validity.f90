@@ -194,7 +194,7 @@ contains
                   //' of its thickness, too far for linear bending; take a thicker plate'
             case ('weight_ratio')
                words = 'the weight is '//percent(value) &
-                  //' of the largest force, and gravity is left out; take a faster impact'
+                  //' of the largest force, and left out: give impact.gravity, 0 on a pendulum'
             case ('mean_pressure')
                words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
                   //'too high; take a slower impact'

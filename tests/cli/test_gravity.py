@@ -192,15 +192,27 @@ def test_drop_height(vcor):
 
 
 def test_weight_is_not_judged(vcor):
-    """weight_ratio is a column, but no objection where the impact is solved with its weight."""
+    """weight_ratio is a column, but no objection where a gravity is given, 0 on a pendulum."""
+    words = ["run", "case.nml", "--print", "weight_ratio,validity_cause"]
     vcor.write(CASE)
-    with_weight = vcor("run", "case.nml", "--print", "weight_ratio")
-    without = vcor(
-        "run", "case.nml", "--print", "weight_ratio", "--set", "impact.gravity=0"
-    )
-    assert float(with_weight.out) > 0.01
-    assert "weight_ratio" not in with_weight.err
-    assert "weight_ratio" in without.err
+    for gravity in ("9.81", "0"):
+        given = vcor(*words, "--set", f"impact.gravity={gravity}")
+        assert float(given.out.split()[0]) > 0.01
+        assert "weight_ratio" not in given.out + given.err
+    vcor.write(CASE.replace(", gravity = 9.81", ""))
+    without = vcor(*words)
+    assert "weight_ratio" in without.out and "weight_ratio" in without.err
+    # also as a point of a sweep
+    vcor.write(CASE + "&sweep parameter = 'impact.gravity', values = 0, 9.81 /\n")
+    assert "weight_ratio" not in vcor(*words).out
+
+
+def test_drop_of_a_pendulum(vcor):
+    """Its height has the standard gravity, which does not act along the impact."""
+    vcor.write(CASE.replace("velocity = 0.4, gravity = 9.81", "drop_height = 0.05"))
+    assert run(vcor, "initial_energy,cor,rebound_height")[0] == run(
+        vcor, "initial_energy,cor,rebound_height", "--set", "impact.gravity=0"
+    )[0]
 
 
 def test_refused(vcor):

@@ -420,7 +420,7 @@ contains
          if (allocated(error)) return
          self%contact_made_at = latest
       end if
-      gravity = case%number(self%at%gravity)
+      gravity = positive_or_zero(case%number(self%at%gravity))
       velocity = self%reading%number(case, self%at%velocity)
       height = self%reading%number(case, self%at%drop_height)
       if (ieee_is_nan(velocity)) &
@@ -483,9 +483,9 @@ contains
       self%surroundings%has_body = self%impact%face%has_waves
       self%surroundings%extent = self%reading%number(case, self%at%extent)
       self%surroundings%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
-      self%surroundings%is_weighed = self%impact%gravity > 0.0_wp
+      self%surroundings%is_weighed = .not. ieee_is_nan(case%number(self%at%gravity))
       self%surroundings%gravity = merge(self%impact%gravity, standard_gravity, &
-         self%surroundings%is_weighed)
+         self%impact%gravity > 0.0_wp)
       do i = 1, size(yield_strength)
          yield_strength(i) = self%reading%number(case, self%at%yield_strength(i))
       end do

@@ -95,10 +95,10 @@ module vcor_impact_validity
       !> Whether the waves are those of the plate as it is, of any thickness: what neglects them, or
       !> takes the plate as thin or as a half space, is not judged then
       logical :: has_body = .false.
-      !> Whether the sphere is dropped from a given height, and the gravity of the fall [m/s2]
+      !> Whether the sphere is dropped from a given height, and gravity where there is any [m/s2]
       logical :: drops = .false.
       real(wp) :: gravity = standard_gravity
-      !> Whether the impact is solved with this gravity
+      !> Whether a gravity is given, also 0: the weight that acts along the impact is known
       logical :: is_weighed = .false.
       !> Poisson's ratio of the plate [-]
       real(wp), private :: poisson_ratio = none

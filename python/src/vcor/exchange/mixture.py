@@ -50,8 +50,8 @@ from .contact_laws import Twin
 ROUNDING = 1e-3
 #: Most bodies, so that a matrix can be read
 MOST = 40
-#: What all pairs must have in common
-COMMON = ("impact.temperature", "impact.gravity", "contact.law")
+#: What all pairs must have in common, and what counts where it is not given
+COMMON = {"impact.temperature": None, "impact.gravity": 0.0, "contact.law": None}
 #: Compliance of a body that a fit makes rigid, relative to that of a contact
 RIGID = 1e-3
 
@@ -251,8 +251,8 @@ def _refuse_contradictions(cases: Sequence[Case]) -> None:
             if group != found[0]:
                 raise InputError(f"{case.name}: found another material {found[1]} than in {name}, "
                                  "expected one material of each name")  # fmt: skip
-        for address in COMMON:
-            value, other = case[address], cases[0][address]
+        for address, default in COMMON.items():
+            value, other = (one[address] or default for one in (case, cases[0]))
             if value != other and None not in (value, other):
                 raise InputError(f"{case.name}: found {address} = {value}, and {other} in "
                                  f"{cases[0].name}; expected the same in all pairs")  # fmt: skip
