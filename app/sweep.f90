@@ -1,6 +1,6 @@
 !> The command run for a sweep, on all ranks and their threads
 !>
-!> Only the first rank reads and writes files and talks to the user.
+!> Only the first rank reads and writes files and prints.
 module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t

@@ -1,4 +1,4 @@
-"""Write the figures and the numbers of docs/measurements.md: impacts beside measurements.
+"""Write the figures and the numbers of docs/measurements.md: impacts compared with measurements.
 
 The measurements and the cases are in data/measurements; every number that is put in is there, in
 the examples that are named here, or in the capitals below.
@@ -249,7 +249,7 @@ def slope(one, v):
 
 
 def ice():
-    """Laws of ice beside the steepest linear solid."""
+    """Laws of ice compared with the steepest linear solid."""
     made, (left, right) = panels()
     one = case("ice")
     v = np.geomspace(1e-9, 1e5, 100)

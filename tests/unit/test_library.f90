@@ -300,7 +300,7 @@ contains
       call refused(error, error_file, "no folder for a text")
       call write_hdf5('no/such/folder/x.h5', [table], error)
       call refused(error, error_file, "no folder for an HDF5 file")
-      ! a plate of a tenth of a millimetre takes up the blow
+      ! a plate of a tenth of a millimetre absorbs the impact
       call override(case, 'plate.half_thickness=1e-4', error)
       call success(error, "a thin plate is not an error")
       call problem%update(case, error)

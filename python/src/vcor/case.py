@@ -253,7 +253,7 @@ class Case:
         values: Mapping[str, float] | None = None,
         quantities: Sequence[str] | None = None,
     ) -> dict[str, float | str]:
-        """Solve one impact, for loops: plain numbers, less than 0.1 ms beside the solver.
+        """Solve one impact, for loops: plain numbers, less than 0.1 ms in addition to the solver.
 
         Parameters
         ----------

@@ -222,7 +222,7 @@ def figure(
 
 
 def history(case: Case, **options: Any) -> Figure:
-    """Figure of the impact of a case over time; options are those of `figure`."""
+    """Figure of the impact of a case against time; options are those of `figure`."""
     return figure(case, kind="history", **options)
 
 
@@ -326,7 +326,7 @@ def _history(wishes: _Wishes) -> Figure:
 
 
 def _loop(wishes: _Wishes) -> Figure:
-    """Force over indentation up to the end of contact, with the energy lost."""
+    """Force against indentation up to the end of contact, with the energy lost."""
     courses = _courses(wishes.results)
     fx, x_unit = _scale("m", *[course["indentation"] for course in courses])
     fy, y_unit = _scale("N", *[course["force"] for course in courses])
@@ -355,7 +355,7 @@ def _loop(wishes: _Wishes) -> Figure:
 
 
 def _moduli(wishes: _Wishes) -> Figure:
-    """Relaxation modulus over time, storage and loss modulus and loss tangent over frequency."""
+    """Relaxation modulus against time; storage, loss modulus and loss tangent against frequency."""
     for one in wishes.data:
         count = one["temperature"].nunique() if "temperature" in one else 0
         if count > 1:
@@ -424,7 +424,7 @@ def _moduli(wishes: _Wishes) -> Figure:
 
 
 def _sweep(wishes: _Wishes) -> Figure:
-    """Quantities over a parameter; of two parameters a curve for each value of one."""
+    """Quantities against a parameter; of two parameters a curve for each value of one."""
     results, names = wishes.results, wishes.quantities
     lines: list[tuple[str | None, xr.Dataset]] = []
     across = _across(results[0])
@@ -474,7 +474,7 @@ def _sweep(wishes: _Wishes) -> Figure:
 
 
 def _bands(axis: Axes, number: int, x: Any, line: xr.Dataset, name: str, factor: float) -> None:
-    """What vcor uncertainty knows beside a curve: shares of the samples, and exact mechanics."""
+    """What vcor uncertainty adds to a curve: shares of the samples, and exact mechanics."""
     color = list(mpl.rcParams["axes.prop_cycle"])[number % MOST]["color"]
     for low, high, text, alpha in (("2.5", "97.5", "95 %", 0.2), ("16", "84", "68 %", 0.3)):
         if (bottom := f"{name}_p{low}") in line and (top := f"{name}_p{high}") in line:
@@ -511,7 +511,7 @@ def _hatch_span(axis: Axes, lines: list[xr.Dataset], across: str, factor: float)
 
 
 def _map(wishes: _Wishes) -> Figure:
-    """Quantities over two parameters, as filled contours with labelled lines."""
+    """Quantities against two parameters, as filled contours with labelled lines."""
     result, names = wishes.results[0], wishes.quantities
     if len(wishes.results) > 1 or wishes.given:
         found = option("legends") if wishes.given else f"{len(wishes.results)} of them"

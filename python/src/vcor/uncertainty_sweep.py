@@ -1,4 +1,4 @@
-"""Uncertainty along a sweep: bands of results over the parameter that a case varies."""
+"""Uncertainty along a sweep: bands of results against the parameter that a case varies."""
 
 from __future__ import annotations
 

@@ -105,7 +105,7 @@ module vcor_case_choices
          'A hardness is not a modulus of an impact: it is read after seconds, while a contact of ' &
          //'a millisecond meets a stiffer material that loses more. Give moduli from DMA (vcor ' &
          //'fit, vcor master), or find them from measured impacts (vcor identify); ' &
-         //'docs/materials.md has a table of what a hardness tells.'), &
+         //'docs/materials.md has a table of moduli by hardness.'), &
       topic_t(' celsius fahrenheit ', &
          'Temperatures of a case are in K: 23 C is 296.15 K. Data may have C, and options such ' &
          //'as --reference 23C of vcor master; --celsius of vcor plot draws C.'), &
@@ -117,7 +117,7 @@ module vcor_case_choices
       topic_t(' tan_delta damping ', &
          'The loss tangent: column peak_loss_tangent at pi/t0, which decides the loss, ' &
          //'loss_tangent at 2 pi/t0; peak_storage_modulus is the storage modulus at pi/t0. ' &
-         //'vcor material gives all over frequency.'), &
+         //'vcor material gives all against frequency.'), &
       topic_t(' dma tts ', &
          'impact.temperature shifts the times of a material with a shift; vcor master ' &
          //'and vcor fit make one from DMA data at several temperatures.'), &

@@ -201,13 +201,13 @@ contains
       ! a rebound with all of this energy has a coefficient of restitution of 1e-7
       real(wp), parameter :: negligible = 1.0e-14_wp
       ! indentation divided by displacement of the sphere that counts as no indentation
-      real(wp), parameter :: no_dent = 1.0e-3_wp
+      real(wp), parameter :: no_indentation = 1.0e-3_wp
 
       associate (now => self%state(:, self%last), first => self%state(:, 0))
          is_stuck = 0.5_wp*impact%mass*(now(col_velocity)**2 + now(col_sphere_velocity)**2) &
             + max(0.0_wp, now(col_force)*now(col_indentation)) &
             <= negligible*0.5_wp*impact%mass*first(col_velocity)**2
-         if (is_stuck .and. abs(now(col_indentation)) > no_dent*abs(now(col_sphere))) &
+         if (is_stuck .and. abs(now(col_indentation)) > no_indentation*abs(now(col_sphere))) &
             is_stuck = .not. impact%springs_back()
       end associate
    end function is_stuck

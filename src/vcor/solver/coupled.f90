@@ -176,7 +176,7 @@ contains
          status = now%coarse%status
          if (status == course_ended) status = now%fine%status
          if (status /= course_ended) then
-            ! what the scout has seen is not so
+            ! what the search has found does not hold
             if (status == course_outlasts) call search%note(search%window, now%coarse%dt)
             search%steps = min(2*search%steps, most_steps)
             search%attempt = search%attempt + 1
@@ -188,7 +188,7 @@ contains
                now%coarse%cor(impact), now%fine%cor(impact))
             if (level == self%kept%level .or. &
                 cor_error <= self%settings%accuracy .and. self%kept%level < 0) exit
-            ! steps that do not resolve the contact tell nothing
+            ! steps that do not resolve the contact say nothing
             if (level == finest .or. self%kept%level < 0 &
                 .and. now%coarse%dt*resolved <= impact%time_scale() .and. &
                 cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
@@ -385,7 +385,7 @@ contains
       call march(impact, self%slot(i)%kernel, course, error)
    end subroutine run
 
-   !> Make room for a kernel, by throwing away the oldest
+   !> Make room for a kernel: delete the oldest
    pure subroutine make_room(self)
       type(coupled_t), intent(inout) :: self
 

@@ -25,7 +25,7 @@ _BAND = (1e-2, 2.0)
 _POINTS = 40
 #: Relative error of a sum
 _ACCURACY = 1e-3
-#: Weight of the integral before the band, beside that of a point in it
+#: Weight of the integral before the band, relative to that of a point in it
 _AREA_WEIGHT = 10.0
 #: Most terms of a sum
 _MOST_TERMS = 40

@@ -516,7 +516,7 @@ def _entered_in_mfix(e: float) -> float:
 
 
 def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
-    """Table of e over (m/sqrt(R v))^(2/5), where it depends on nothing else."""
+    """Table of e against (m/sqrt(R v))^(2/5), where it depends on nothing else."""
     reasons = {
         "waves in the plate": case["plate.waves"] not in (None, "none"),
         "gravity": bool(case["impact.gravity"]),

@@ -45,7 +45,7 @@ def export(
     quantity
         What e is: `cor_sphere` or `cor`; both are the same without waves.
     master
-        e over (m/sqrt(R v))^(2/5), for a `table`: one curve for all sizes of a pair of materials.
+        e against (m/sqrt(R v))^(2/5), for a `table`: one curve for all sizes of two materials.
     law
         Number of the law in the header of the export, by its misfit; 1: the best one.
     threads
@@ -88,7 +88,7 @@ def _parser() -> _command.Parser:
     add("--quantity", choices=tuple(MEANING), default="cor_sphere",
         help="what e is; default: cor_sphere")  # fmt: skip
     add("--master", action="store_true",
-        help="table of e over (m/sqrt(R v))^(2/5), for all sizes of a pair")  # fmt: skip
+        help="table of e against (m/sqrt(R v))^(2/5), for all sizes of a pair")  # fmt: skip
     add("--law", metavar="N", type=int, default=1, help="law of the header; default: the best, 1")
     add("--threads", metavar="N", type=int, help="threads; default: one per core")
     parser.add_outputs()

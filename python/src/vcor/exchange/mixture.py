@@ -98,7 +98,7 @@ class Mixture:
         return next(iter(self.texts.values()))
 
     def figure(self) -> Any:
-        """Figure (matplotlib) of e of all pairs over the velocity, and of the program's law."""
+        """Figure (matplotlib) of e of all pairs against the velocity, and of the program's law."""
         from ..plot import HEIGHT, PAGE, drawn
 
         kinds = dict.fromkeys(self.bodies[j - 1].material for _, j in self.pairs)

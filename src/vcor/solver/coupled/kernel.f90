@@ -44,7 +44,7 @@ module vcor_solver_coupled_kernel
       real(wp), allocatable :: passing(:, :)
       !> Speed of its shear waves [m/s]; 0 without waves
       real(wp) :: speed = 0.0_wp
-      !> Whether the springs remember: more than their first weight counts
+      !> Whether the springs have a memory: more than their first weight counts
       logical :: remembers = .false.
       !> Whether hats act on each other
       logical :: has_response = .false.

@@ -272,8 +272,8 @@ contains
    end subroutine gather
 
    !> Find the springs that push, and their compression. All that are on the wrong side change it at
-   !> once, which takes two or three rounds from the springs of the step before. If that goes round
-   !> in circles the last of them changes alone, by Murty's rule (K. G. Murty, Opsearch 8 (1971)
+   !> once, which takes two or three rounds from the springs of the step before. If that cycles,
+   !> the last of them changes alone, by Murty's rule (K. G. Murty, Opsearch 8 (1971)
    !> 188), which always ends as the response is passive
    subroutine find_pushing(self, kernel, error)
       type(balance_t), intent(inout) :: self
@@ -404,7 +404,7 @@ contains
       !> Steps, < 0 if the root is after the end
       real(wp) :: steps
 
-      ! steps that resolve how the waves end the contact see it end before the root
+      ! with steps that resolve how the waves end the contact it ends before the root
       real(wp), parameter :: farthest = -20.0_wp
       real(wp) :: share
       integer :: i, j, n
@@ -485,7 +485,7 @@ contains
       course%time_error = unknown*fast
    end subroutine end_contact
 
-   !> Let the sphere fly free from the end of the contact
+   !> Free flight of the sphere from the end of the contact on
    pure subroutine leave(course, impact)
       !> The course, with contact time and impulse
       type(course_t), intent(inout) :: course

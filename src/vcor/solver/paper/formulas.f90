@@ -2,7 +2,7 @@
 !> and their stability
 !>
 !> Oscillations from step to step are too fast for the inertia of the sphere and for changes of s
-!> and alpha. The scheme sees s'' = -U'' = -d (k s')' with d = alpha du/ds, (3/2) alpha sqrt(s) for
+!> and alpha. For the scheme s'' = -U'' = -d (k s')' with d = alpha du/ds, (3/2) alpha sqrt(s) for
 !> a sphere: a damper. For s' ~ z^n and x = 1/z each of its formulas is a factor:
 !>
 !>     Adams-Bashforth  (1 - x)/x s' = dt sigma(x) s''
