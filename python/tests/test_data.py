@@ -16,6 +16,7 @@ from vcor.materials import grid
 from vcor.materials.data import columns_option, curves, read_data, read_moduli
 from vcor.materials.names import read_head
 from vcor.materials.table import main
+from vcor.materials.tables import Choice
 
 OMEGA = np.geomspace(1, 1000, 7)
 STORAGE = 2e6 + 3e7 * OMEGA**2 / (1e4 + OMEGA**2)
@@ -406,7 +407,10 @@ def test_acceleration(tmp_path):
 # ---------------------------------------------------------------------------------- refusals
 
 BAD = {
-    "stress": ("Time [s],Stress [Pa]\n1,5\n2,4\n", [":1:", "'Stress [Pa]'", "columns="]),
+    "stress": ("Time [s],Stress [Pa]\n1,5\n2,4\n",
+               [":1:", "'Stress [Pa]'", "(a stress over the strain)", "columns="]),
+    "temperatures at one frequency": ("T [C],E' [Pa],E'' [Pa]\n20,5,1\n30,4,1\n", [
+        "no column of the frequency", "a temperature sweep at one frequency tells no shifts"]),
     "Spannung": ("Zeit [s];Spannung [Pa]\n1;5\n2;4\n", ["'Spannung [Pa]'"]),
     "bulk": ("time [s],bulk modulus [Pa]\n1,5\n2,4\n", ["'bulk modulus [Pa]'"]),
     "creep": ("time [s],Creep modulus [Pa]\n1,5\n2,4\n", ["'Creep modulus [Pa]'"]),
@@ -525,6 +529,26 @@ def test_columns_that_the_user_names(tmp_path):
             read(tmp_path, bare if isinstance(wrong, list) else text, wrong)
     two = table(OMEGA, STORAGE, LOSS, STORAGE / 2, head="omega,E',E'',E'\n")
     is_the_material(read(tmp_path, two, {"storage": 2}))
+
+
+def test_columns_of_several_files(tmp_path):
+    """A head that the user names counts in the files that have it, names in those without heads."""
+    dynamic, impacts, record = tmp_path / "dma.csv", tmp_path / "e.csv", tmp_path / "force.csv"
+    dynamic.write_text(table(OMEGA, STORAGE, LOSS, head="omega,A,E''\n"))
+    impacts.write_text("velocity,e1\n1,0.5\n2,0.4\n")
+    record.write_text("0.001,0\n0.002,1\n")
+    choice = Choice({"storage": "A", "cor": "e1"}, None, files=2)
+    is_the_material(read_data(dynamic, choice))
+    assert list(read_data(impacts, choice)["cor"]) == [0.5, 0.4]
+    choice.refuse_unseen("the files have")
+    names = Choice(["time", "force"], None, files=2)
+    assert list(read_data(record, names)["force"]) == [0, 1]
+    with pytest.raises(vcor.InputError, match="'A'"):
+        read_data(dynamic, names)
+    wrong = Choice({"cor": "e1", "storage": "C"}, None, files=2)
+    read_data(impacts, wrong)
+    with pytest.raises(vcor.UsageError, match="the files have no column 'C', expected one of"):
+        wrong.refuse_unseen("the files have")
 
 
 def test_units_that_the_user_names(tmp_path):

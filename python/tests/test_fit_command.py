@@ -118,6 +118,14 @@ def test_several_temperatures(vcor):
 # What is wrong with data
 
 
+def test_what_is_no_modulus(vcor):
+    """A temperature sweep, and forces of a relaxation test: what they are and what to do."""
+    (vcor.folder / "sweep.csv").write_text("T [C],f [Hz],E' [Pa],E'' [Pa]\n20,1,5,1\n30,1,4,1\n")
+    (vcor.folder / "force.csv").write_text("t [s],F [N]\n1,3\n2,2\n")
+    vcor.refuses("fit", "sweep.csv", code=INPUT, says=["one frequency at each", "identify"])
+    vcor.refuses("fit", "force.csv", code=INPUT, says=["force.csv: found forces", "F/(A strain)"])
+
+
 def test_unreadable(vcor):
     vcor.refuses("fit", "none.csv", code=FILE, says="No such file")
     vcor.refuses("fit", ".", code=FILE, says="found a folder")

@@ -138,6 +138,23 @@ def test_record_of_force_with_unknown_start():
     assert found.relative_error < 2e-3
 
 
+def test_a_ramp_of_temperature_at_one_frequency(tmp_path):
+    """It says nothing of its own shifts, but fits a material that has them."""
+    case = vcor.read(ROOT / "examples" / "identification" / "block.nml")
+    rows = []
+    for kelvin in np.arange(290.0, 340.0, 0.8):
+        case["impact.temperature"] = float(kelvin)
+        modulus = complex(case.material("rubber").complex_modulus(2 * math.pi))
+        rows.append(f"{kelvin - 273.15:.2f},{1 + 1e-4 * (-1) ** len(rows):.4f},"
+                    f"{modulus.real:.7e},{modulus.imag:.7e}")  # fmt: skip
+    path = tmp_path / "ramp.csv"
+    path.write_text("\n".join(["T [C],f [Hz],E' [Pa],E'' [Pa]", *rows]) + "\n")
+    true, case["rubber.time"] = case["rubber.time"], 3.0
+    found = vcor.identify(case, path, ["rubber.time", "rubber.wlf_c1"], errors={
+        "storage_modulus": 1e-3, "loss_modulus": 1e-3})  # fmt: skip
+    assert found["rubber.time"] == pytest.approx(true, rel=1e-3)
+
+
 def test_impacts_and_moduli_together():
     case = guess("sls")
     times = np.geomspace(1e-4, 1e-2, 12)
@@ -459,6 +476,7 @@ def test_a_column_without_numbers_gives_no_warning(tmp_path, recwarn):
         ("velocity,cor,cor_sigma\n1,0.5,0.01\n2,0.52,0\n", "row 2: found a cor_sigma of 0"),
         ("velocity,cor,cor_sigma\n1,0.5,0.01\n2,0.52,nan\n", "cor at 2 has none"),
         (HEADS + 4 * "1,0.5,2.2\n", "found 2 distinct data for 3 parameters"),
+        ("t [s],F [N]\n0,5\n1,4\n2,3\n3,2\n4,2\n", "found the largest force at the first time"),
     ],
 )
 def test_an_error_in_a_file_names_its_column(tmp_path, text, said):

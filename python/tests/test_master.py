@@ -327,6 +327,10 @@ def test_shear_moduli_become_tensile_ones(tmp_path):
         (table(f"T [C],{HEAD}", [0, 10, 0, 10]), "two curves at 0 C"),
         (table(f"T [C],{HEAD}", [-40, 90]), "the storage moduli at -40 C and 90 C have none"),
         ("f,E_stor,E_loss\n1,2,3\n2,3,4\n", "no column of temperatures"),
+        # steps of temperature, and a ramp whose frequency is measured, too
+        ("f,E_stor,E_loss,T\nHz,MPa,MPa,C\n1,3,3,20\n1,2,4,30\n", "one frequency at each temp"),
+        ("f,E_stor,E_loss,T\nHz,MPa,MPa,C\n1,3,3,20\n1.001,2,4,20.5\n", "one frequency at each"),
+        ("t [s],F [N]\n1,3\n2,2\n", "of a relaxation test F/(A strain) is one"),
         ("f,E_stor,E_loss,T\nHz,MPa,MPa,C\n1,2,3,20\n2,3,4,20\n3,4,5,20\n", "two or more"),
         ("f,E_stor,E_loss,T\nHz,MPa,MPa,R\n1,2,3,20\n2,3,4,20\n", "found 'R' as unit of 'T'"),
     ],

@@ -44,6 +44,7 @@ from .materials.data import (
     plain_name,
     read_data,
 )
+from .materials.tables import Choice
 from .materials.units import PREFIXES, ZERO_C
 from .sources import Result, Source, is_result, legends_of
 
@@ -157,11 +158,7 @@ def figure(
     # a Dataset and a name are iterable, too
     files = [files] if isinstance(files, (xr.Dataset, str, Case)) else listed(files)
     results = [Result(source, celsius=celsius) for source in files if is_result(source)]
-    data = [
-        read_data(name, columns, units, whole=False)
-        for name in files
-        if not (isinstance(name, (xr.Dataset, Case)) or is_result(name))
-    ]
+    data = _measured(files, columns, units)
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
     if len(results) > MOST:
@@ -946,11 +943,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if options.script:
             written.append(path.with_suffix(".py"))
             _text.write(written[-1], _script(options.files, settings, path).encode())
-        said = [read_data(name, settings.get("columns"), settings.get("units"), whole=False)
-                for name in options.files if not is_result(name)]  # fmt: skip
+        said = _measured(options.files, settings.get("columns"), settings.get("units"))
         if not options.quiet:
             sys.stdout.write("".join(f"{one.attrs['taken']}\n" for one in said))
             sys.stdout.write("".join(f"written {path}\n" for path in written))
+
+
+def _measured(files: Sequence[Any], columns: Columns, units: Units) -> list[pd.DataFrame]:
+    """Measured data among files of results."""
+    names = [one for one in files if not (isinstance(one, (xr.Dataset, Case)) or is_result(one))]
+    choice = Choice(columns, units, len(names))
+    data = [read_data(name, choice, whole=False) for name in names]
+    choice.refuse_unseen("the files have")
+    return data
 
 
 def _script(files: Sequence[str], settings: dict[str, Any], target: Path) -> str:

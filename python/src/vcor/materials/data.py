@@ -16,7 +16,7 @@ from .._library import InputError, UsageError
 from .._text import option
 from .grid import read_grid
 from .names import read_head
-from .reader import ALIKE, Reader
+from .reader import Reader, refuse_all_but_moduli
 from .tables import Choice
 from .units import ZERO_C
 
@@ -29,11 +29,13 @@ Units = Mapping[str, str] | Sequence[str] | str | None
 
 #: Difference of temperatures that begins another curve [K]
 SAME_TEMPERATURE = 1.0
+#: Relative difference of the frequencies of a sweep of temperatures at one frequency
+SAME_FREQUENCY = 0.01
 
 
 def read_data(
     path: str | os.PathLike[str],
-    columns: Columns = None,
+    columns: Columns | Choice = None,
     units: Units = None,
     *,
     unit_of: Callable[[str], str] | None = None,
@@ -66,7 +68,7 @@ def read_data(
     """
     import pandas as pd
 
-    choice = Choice(columns, units)
+    choice = columns if isinstance(columns, Choice) else Choice(columns, units)
     grid = read_grid(path)
     reader = Reader(grid, choice, unit_of, whole)
     parts, kind = reader.parts()
@@ -102,6 +104,9 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
     kelvin = data["temperature"].to_numpy() if "temperature" in data else np.full(len(data), np.nan)
     group = data["set"].to_numpy() if "set" in data else np.zeros(len(data))
     jumps = (np.diff(group) != 0) | (np.abs(np.diff(kelvin)) > SAME_TEMPERATURE)
+    if across == "frequency" and np.ptp(data[across]) < SAME_FREQUENCY * data[across].max():
+        # a temperature sweep
+        jumps |= np.isfinite(kelvin[1:])
     found = []
     for part in np.split(np.arange(len(data)), np.flatnonzero(jumps) + 1):
         one = data.iloc[part]
@@ -124,7 +129,7 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
 
 def read_moduli(
     name: str | os.PathLike[str],
-    columns: Columns = None,
+    columns: Columns | Choice = None,
     units: Units = None,
     *,
     poisson_ratio: float | None = None,
@@ -136,11 +141,7 @@ def read_moduli(
     """
     path, given = _at(os.fspath(name))
     data = read_data(path, columns, units)
-    if data.attrs["kind"] not in ("dynamic", "relaxation"):
-        raise InputError(
-            f"{data.attrs['path']}: found {ALIKE[data.attrs['kind']]}, expected moduli "
-            "against time or frequency"
-        )
+    refuse_all_but_moduli(data.attrs["kind"], data.attrs["path"])
     data = tensile(data, poisson_ratio, shear=shear)
     found = curves(data)
     for one in found:

@@ -21,6 +21,7 @@ from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
 from .master import curve_of, of_curves
 from .prony import MOST_TERMS, fit_series
+from .reader import refuse_all_but_moduli
 from .samples import Samples, one_thread
 from .units import ZERO_C
 
@@ -194,9 +195,7 @@ def samples_of(
     """Samples of a file or of its columns, tensile; the name of the file, and what was done."""
     table = data if hasattr(data, "attrs") else read_data(data)
     source, kind = str(table.attrs.get("path", "data")), table.attrs.get("kind")
-    if kind not in ("relaxation", "dynamic"):
-        raise InputError(f"{source}: expected moduli: a time and a relaxation modulus, or a "
-                         "frequency, storage and loss modulus")  # fmt: skip
+    refuse_all_but_moduli(kind, source)
     parts = curves(tensile(table, poisson_ratio, shear=shear))
     if len(parts) > 1:
         samples, note = _shifted(parts, source)

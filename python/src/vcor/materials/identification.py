@@ -46,6 +46,7 @@ from .observations import (
 )
 from .samples import one_thread
 from .search import STEP, Problem
+from .tables import Choice
 
 #: Errors of the impacts to those of the data, small since derivatives are differences of impacts,
 #: and the accuracies between which they are solved
@@ -214,7 +215,8 @@ def identify(
     seed
         Seed of the starts.
     columns, units
-        Which columns of files are what, and their units, as for `vcor.read_data`.
+        Which columns of files are what, and their units, as for `vcor.read_data`. A text counts in
+        the files that have such a head.
 
     Returns
     -------
@@ -240,7 +242,8 @@ def identify(
     alone: Any = [data] if hasattr(data, "keys") else listed(data)
     # a DataFrame is not a Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
-    sources = [one if isinstance(one, dict) else File(one, columns, units) for one in sources]
+    choice = Choice(columns, units, sum(not isinstance(one, dict) for one in sources))
+    sources = [one if isinstance(one, dict) else File(one, choice) for one in sources]
     if not sources:
         raise UsageError("expected at least one file or table of data")
     free = [address for address in free if address not in fix]
@@ -253,6 +256,7 @@ def identify(
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
+    choice.refuse_unseen("the files have")
     # the accuracy that the fit needs is not one of the case
     given = case.copy()
     if case["solver.method"] != "direct":

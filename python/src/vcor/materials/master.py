@@ -23,10 +23,11 @@ from numpy.typing import NDArray
 
 from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, within
-from .._text import option
+from .._text import command, option
 from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli
 from .samples import one_thread
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
+from .tables import Choice
 from .units import ZERO_C
 
 if TYPE_CHECKING:
@@ -216,7 +217,8 @@ def master(
     vertical_shift
         Whether the moduli are also proportional to the temperature; None: the data decide.
     columns, units
-        Which columns of the files are what, and their units, as for `vcor.read_data`.
+        Which columns of the files are what, and their units, as for `vcor.read_data`. A text
+        counts in the files that have such a head.
 
     Returns
     -------
@@ -234,11 +236,9 @@ def master(
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     if poisson_ratio is not None:
         within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
-    read = [
-        one
-        for name in names
-        for one in read_moduli(name, columns, units, poisson_ratio=poisson_ratio)
-    ]
+    choice = Choice(columns, units, len(names))
+    read = [one for name in names for one in read_moduli(name, choice, poisson_ratio=poisson_ratio)]
+    choice.refuse_unseen("the files have")
     found = of_curves(
         [curve_of(one) for one in read], str(names[0]), reference_temperature, vertical_shift
     )
@@ -258,6 +258,11 @@ def of_curves(
     if any(math.isnan(curve.temperature) for curve in curves):
         raise InputError(f"{source}: found no column of temperatures, expected one named T, or "
                          f"{source}@-20C for a file of one temperature")  # fmt: skip
+    if curves and all(len(curve.at) == 1 for curve in curves):
+        what = "frequency" if curves[0].dynamic else "time"
+        raise InputError(f"{source}: found one {what} at each temperature, which tells no shifts; "
+                         f"expected several at each; {command('identify')} takes such a sweep for "
+                         "a material that has a shift")  # fmt: skip
     if len(curves) < 2 or len({curve.dynamic for curve in curves}) > 1:
         raise InputError("expected moduli of one kind at two or more temperatures")
     temperatures = np.array([curve.temperature for curve in curves])

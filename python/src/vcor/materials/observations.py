@@ -19,7 +19,8 @@ from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
 from .._text import near
 from ..case import Case, arrays, number, radius_of
-from .data import SAME_TEMPERATURE, Columns, Units, curves, read_data, tensile
+from .data import SAME_TEMPERATURE, curves, read_data, tensile
+from .tables import Choice
 
 
 @dataclass(frozen=True)
@@ -27,8 +28,7 @@ class File:
     """A file of measured data, with what its user says of its columns and units."""
 
     path: str | os.PathLike[str]
-    columns: Columns = None
-    units: Units = None
+    choice: Choice | None = None
 
 
 #: By column: the unit of its last digit, and its most significant digits; of arrays none is known
@@ -229,6 +229,10 @@ class Record:
         self.quantity = ["force"] * len(self.at)
         # an error relative to the value would take the zeros outside the contact as exact
         self.sigma = factor * _sigma(columns, name)[good]
+        if not np.argmax(self.value):
+            raise InputError(f"{source}: found the largest force at the first time, as in a "
+                             "relaxation test, whose modulus is F/(A strain) with the area A; "
+                             "expected a record of an impact, from its begin on")  # fmt: skip
         largest = float(np.max(self.value)) - (-zero if self.turned else zero)
         self.scale = np.full(len(self.at), largest)
         self.digit = factor * last_digit(columns[name], written.get(name))[good]
@@ -516,7 +520,7 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     else:
         file = source if isinstance(source, File) else File(source)
         name = os.fspath(file.path)
-        columns, taken, written = read_columns(file.path, case, materials, file.columns, file.units)
+        columns, taken, written = read_columns(file.path, case, materials, file.choice)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
@@ -541,8 +545,7 @@ def read_columns(
     path: str | os.PathLike[str],
     case: Case,
     materials: Sequence[str] = (),
-    columns: Columns = None,
-    units: Units = None,
+    choice: Choice | None = None,
 ) -> tuple[dict[str, Floats], str, Written]:
     """Columns of a file, what was taken, and digits; moduli by the ratio of the first material."""
 
@@ -550,7 +553,7 @@ def read_columns(
         """SI unit of the value at an address."""
         return case._describe(address).unit
 
-    data = read_data(path, columns, units, unit_of=unit_of)
+    data = read_data(path, choice, unit_of=unit_of)
     if data.attrs["kind"] in ("dynamic", "relaxation"):
         ratios = [number(case, f"{name}.poisson_ratio") for name in materials]
         data = tensile(data, ratios[0] if ratios else None)

@@ -37,7 +37,7 @@ ALIKE = {
     "dynamic": "moduli against frequency",
     "relaxation": "moduli against time",
     "shift": "shift factors",
-    "record": "records of an impact",
+    "record": "forces or accelerations against time",
     "impacts": "impacts",
 }
 #: Columns that a table of some kind may have besides those that it needs
@@ -81,11 +81,9 @@ class Reader:
     def parts(self) -> tuple[list[pd.DataFrame], str]:
         """Frames of the tables of one kind, and the kind."""
         tables = tables_of(self.grid, self.choice)
-        if text := self.choice.missing(tables):
-            known = ", ".join(f"'{one}'" for table in tables for one in table.texts())
-            raise UsageError(
-                f"{option('columns')}: {self.path} has no column '{text}', expected one of {known}"
-            )
+        self.choice.look(tables)
+        if not self.choice.shared:
+            self.choice.refuse_unseen(f"{self.path} has")
         if not tables:
             raise self._no_table()
         for table in tables:
@@ -571,9 +569,10 @@ class Reader:
         if not kind:
             last = free[-1] if free else Head("HEAD")
             could = _could_be(last, _known(table))
+            stress = " (a stress over the strain)" * could[0].endswith("_modulus")
             return InputError(
                 f"{place}: found the columns {told}, none of which is a measured quantity that is "
-                f"known; if '{last.text.strip()}' is {' or '.join(could)}, say which: "
+                f"known; if '{last.text.strip()}' is {' or '.join(could)}{stress}, say which: "
                 + option("columns", {could[0]: last.text.strip()})
             )
         lacks = self._lacks(table, kind)
@@ -582,9 +581,11 @@ class Reader:
         si = QUANTITIES[lacks[0]].unit
         fit = [head.text for head in free if head.unit and size(head.unit, si)]
         one = fit[-1].strip() if fit else "HEAD"
+        more = "; a temperature sweep at one frequency tells no shifts, those at several do"
+        more *= lacks == ["frequency"] and "temperature" in _known(table)
         return InputError(
             f"{place}: found {told}, but no column of the {words}, expected one named as "
-            f"{names}, or {option('columns', {lacks[0]: one})}"
+            f"{names}, or {option('columns', {lacks[0]: one})}{more}"
         )
 
     def shear(self) -> bool | None:
@@ -617,6 +618,14 @@ class Reader:
             more = f" and {len(self.left) - 8} more" if len(self.left) > 8 else ""
             line += f"; not taken: {', '.join(self.left[:8])}{more}"
         return printable(line)
+
+
+def refuse_all_but_moduli(kind: str | None, path: str) -> None:
+    """Refuse data that are no moduli, and say how those of a relaxation test become some."""
+    if kind not in ("dynamic", "relaxation"):
+        found = f"found {ALIKE[kind]}, " if kind in ALIKE else ""
+        test = "; of a relaxation test F/(A strain) is one, with the area A" * (kind == "record")
+        raise InputError(f"{path}: {found}expected moduli against time or frequency{test}")
 
 
 def _known(table: Table) -> set[str]:

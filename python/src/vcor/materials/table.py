@@ -24,6 +24,7 @@ from .data import (
     read_data,
     tensile,
 )
+from .reader import ALIKE, refuse_all_but_moduli
 
 
 def table(
@@ -54,10 +55,11 @@ def table(
             raise InputError(f"{data.attrs['path']}: found a temperature twice, expected it once")
         rows = zip(data.temperature, np.log10(data.shift_factor), strict=True)
         return _text("temperature [K],log10_shift_factor [1]", rows), data.attrs["taken"]
+    refuse_all_but_moduli(data.attrs["kind"], data.attrs["path"])
     if data.attrs["kind"] != "relaxation":
         raise InputError(
-            f"{data.attrs['path']}: found no relaxation moduli or shift factors, of which a table "
-            f"is made; expected moduli against frequency to be fitted ({command('fit')})"
+            f"{data.attrs['path']}: found {ALIKE['dynamic']}, expected moduli against time or "
+            f"shift factors, of which a table is made; {command('fit')} takes this file"
         )
     if poisson_ratio is not None:
         data = tensile(data, within(poisson_ratio, option("poisson_ratio"), -1, 0.5))

@@ -69,13 +69,19 @@ Group = tuple[float, dict[str, Column]]
 
 
 class Choice:
-    """Which columns and units a user says the file has."""
+    """Which columns and units a user says a file has, or several that share it."""
 
     def __init__(
         self,
         columns: Mapping[str, str | int] | Sequence[str] | None,
         units: Mapping[str, str] | Sequence[str] | str | None,
+        files: int = 1,
     ) -> None:
+        #: Whether what one file lacks may stand in another
+        self.shared = files > 1
+        #: Texts of `columns` that a file had, and heads of the files
+        self._seen: set[str] = set()
+        self._heads: dict[str, None] = {}
         if isinstance(columns, str):
             columns = columns.split(",")
         #: Names of the columns of a file without a head, in their order
@@ -127,14 +133,24 @@ class Choice:
             for i, head in enumerate(heads)
         ]
 
-    def missing(self, tables: Sequence[Table]) -> str:
-        """A text of `columns` that no table has."""
+    def look(self, tables: Sequence[Table]) -> None:
+        """Note which texts of `columns` the tables of a file have."""
+        self._heads |= dict.fromkeys(text for table in tables for text in table.texts())
+        self._seen |= {
+            text
+            for text, _ in self.columns.values()
+            for table in tables
+            if any(_matches(head, text) for head in table.heads)
+            or (text.isdigit() and 0 < int(text) <= len(table.heads))
+        }
+
+    def refuse_unseen(self, where: str) -> None:
+        """Refuse a text of `columns` that no file had."""
         for text, _ in self.columns.values():
-            if not any(_matches(head, text) for table in tables for head in table.heads) and not (
-                text.isdigit() and any(0 < int(text) <= len(table.heads) for table in tables)
-            ):
-                return text
-        return ""
+            if text not in self._seen:
+                known = ", ".join(f"'{one}'" for one in self._heads)
+                raise UsageError(f"{option('columns')}: {where} no column '{text}', expected one "
+                                 f"of {known}")  # fmt: skip
 
 
 def _named(key: str) -> tuple[str, float]:
