@@ -210,7 +210,7 @@ contains
       if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       call job%case%get('output', 'history', history)
       if (history .and. any(job%files%writes)) text = text//nl &
-         //'  note: time histories are written of single impacts only'//nl
+         //'  note: time histories are written for single impacts only'//nl
       if (len(files) > 0) text = text//nl//files
       text = text//nl
    end function report

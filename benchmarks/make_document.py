@@ -236,7 +236,7 @@ def figure(accuracy, comparison, modes):
             left.plot([], [], color="0.3", ls="", marker=shape, mfc="white", ms=5, label=name)
         left.set(xlabel="time per impact [\N{MICRO SIGN}s]", ylabel="error of the COR",
                  xlim=(1, 1e6), ylim=(1e-13, 1e-4), title="(a) cost of accuracy")  # fmt: skip
-        made.legend(ncols=5, loc="outside lower center")
+        made.legend(ncols=5, loc="outside upper center")
         points = [(float(row["modes"]), float(row["microseconds"])) for row in modes]
         right.loglog(*zip(*points), color="C0", ls="-", marker=".")
         right.set_xscale("log", base=2)

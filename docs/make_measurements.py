@@ -16,7 +16,7 @@ import pandas as pd
 from matplotlib import style
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline, PchipInterpolator
-from vcor.plot import PAGE, STYLE
+from vcor.plot import HATCH, PAGE, STYLE
 
 import vcor
 
@@ -73,10 +73,16 @@ def put_in(*names):
     return "\n".join(["Inputs (of a fitted number, its first guess):", "", *lines])
 
 
-def panels(count=2):
-    """A figure as wide as a page."""
+def panels(*corners):
+    """A figure as wide as a page, a panel for each corner, such as `upper right`, that has its letter."""
     made = Figure(figsize=(PAGE / 2.54, 7.6 / 2.54), layout="constrained")
-    return made, made.subplots(1, count)
+    axes = made.subplots(1, len(corners))
+    for axis, letter, (height, side) in zip(axes, "ab", map(str.split, corners), strict=True):
+        place = {"upper": 0.965, "lower": 0.035}[height], {"left": 0.025, "right": 0.975}[side]
+        axis.text(place[1], place[0], f"({letter})", transform=axis.transAxes, ha=side,
+                  va={"upper": "top", "lower": "bottom"}[height], zorder=6,
+                  bbox={"fc": "white", "ec": "none", "pad": 1.0})  # fmt: skip
+    return made, axes
 
 
 def table(head, *rows):
@@ -102,7 +108,7 @@ def hatch(axis, x, validity):
     edges = np.concatenate([x[:1], np.sqrt(x[1:] * x[:-1]), x[-1:]])
     for word, lines in (("caution", "//"), ("outside", "////")):
         for i in np.flatnonzero(np.asarray(validity) == word):
-            axis.axvspan(edges[i], edges[i + 1], fill=False, hatch=lines, ec="0.8", lw=0, zorder=0)
+            axis.axvspan(edges[i], edges[i + 1], fill=False, hatch=lines, ec=HATCH, lw=0, zorder=0)
 
 
 def legend(axis, columns=2):
@@ -125,8 +131,14 @@ def band(one, vary, address, values, quantity, **options):
 def fill(axis, x, low, high, color):
     """A band, smooth over few values."""
     fine = np.geomspace(x[0], x[-1], 60)
-    low, high = (PchipInterpolator(np.log(x), end)(np.log(fine)) for end in (low, high))
+    low, high = (smooth(x, end)[1] for end in (low, high))
     axis.fill_between(fine, low, high, color=color, alpha=0.2, lw=0)
+
+
+def smooth(x, y):
+    """A curve through a few values over the logarithm of x."""
+    fine = np.geomspace(x[0], x[-1], 60)
+    return fine, PchipInterpolator(np.log(x), y)(np.log(fine))
 
 
 def ticks(axis, values):
@@ -172,7 +184,7 @@ def alumina():
     v = np.geomspace(1.5, 5, 4)
     fine = np.geomspace(1.5, 5, 24)
     quantities = ["cor_sphere", "half_space_loss", "validity", "validity_cause"]
-    made, (left, right) = panels()
+    made, (left, right) = panels("upper right", "lower right")
     rows, plates = [], {}
     half_space = vcor.Case(re.sub(r"half_thickness.*\n", "\n", one.text()))
     choices = (
@@ -196,7 +208,7 @@ def alumina():
         rows.append([f"{name} (`{waves}`)", plates[name]["cor_sphere"], plates[name]])
     loss = plates["no waves"]["half_space_loss"]
     rows.append(["no waves, less `half_space_loss`", np.sqrt(1 - loss), None])
-    measured(left, *oblique(), fmt="D", color="0.6", label="oblique, from figures")
+    measured(left, *oblique(), fmt="D", color="0.45", label="oblique, from figures")
     measured(left, point.velocity, point.cor_sphere, point.cor_sphere_sigma, label="measured")
     left.set(xlabel="normal velocity [m/s]", ylabel="restitution of the sphere", ylim=(0.965, 1.05))
     ticks(left, [1.5, 2, 3, 4, 5])
@@ -208,7 +220,7 @@ def alumina():
     ):
         one["plate.waves"] = waves
         e = one.sweep({"plate.half_thickness": thick * 5e-4}, ["cor_sphere", "validity"])
-        curve(right, thick, e.cor_sphere, color, line, label=name)
+        curve(right, *smooth(thick, e.cor_sphere), color, line, label=name)
         if waves == "body":
             reaches = np.interp(point.cor_sphere, e.cor_sphere[:4], thick[:4])
         else:
@@ -243,14 +255,14 @@ def alumina():
 
 
 def slope(one, v):
-    """Restitution over velocity, and d ln e/d ln v."""
+    """Restitution against velocity, and d ln e/d ln v."""
     e = one.sweep({"impact.velocity": v}, ["cor"]).cor.values
     return e, CubicSpline(np.log(v), np.log(e))(np.log(v), 1)
 
 
 def ice():
     """Laws of ice compared with the steepest linear solid."""
-    made, (left, right) = panels()
+    made, (left, right) = panels("lower left", "upper right")
     one = case("ice")
     v = np.geomspace(1e-9, 1e5, 100)
     steepest = {}
@@ -336,7 +348,7 @@ def of_yield(at):
 
 def acetate():
     """A pair of spheres predicts the wall; a glass sphere on a wall that yields."""
-    made, (left, right) = panels()
+    made, (left, right) = panels("upper right", "lower right")
     seen = data("acetate_pair").iloc[0]
     v = np.geomspace(0.3, 3, 4)
     fine = np.geomspace(0.3, 3, 24)
@@ -418,8 +430,8 @@ def their_time(one, v, plate):
 
 
 def contact_times():
-    """Contact time over velocity, and over the thickness of a plate."""
-    made, (left, right) = panels()
+    """Contact time against velocity, and against the thickness of a plate."""
+    made, (left, right) = panels("lower left", "lower left")
     one, seen = case("steel_ball_on_steel"), data("contact_time").iloc[0]
     v = np.geomspace(0.3, 3, 24)
     vary = {"steel.modulus": MODULUS, "block.modulus": MODULUS, "steel.density": DENSITY}
@@ -470,9 +482,10 @@ def contact_times():
     lam = np.interp(thick * 5e-4, half, thin.inelasticity)
     error = read / thick - 1
     curve(right, thin.inelasticity, thin.cor_sphere, "C2", "-.", label="e, thin plate")
-    curve(right, lam, body.cor_sphere, "C1", label="e, body")
+    # lam falls with the thickness
+    curve(right, *smooth(lam[::-1], body.cor_sphere.values[::-1]), "C1", label="e, body")
     second = right.twinx()
-    curve(second, lam, 100 * error, "C3", "--")
+    curve(second, *smooth(lam[::-1], 100 * error[::-1]), "C3", "--")
     curve(right, [], [], "C3", "--", label="error of the thickness")
     limit = 100 * claim.largest_relative_error
     second.fill_between(
@@ -513,7 +526,7 @@ def flights(v, e, height, count):
 
 def golf():
     """First rebounds fit one number, which predicts the bounces that follow."""
-    made, (left, right) = panels()
+    made, (left, right) = panels("upper right", "upper left")
     drops, seen = data("golf_ball"), data("golf_ball_flights")
     v, rows = np.geomspace(1.5, 6, 24), []
     ratio, of_drops = drops.rebound_height / drops.drop_height, 0.01 * drops.drop_height
@@ -560,7 +573,7 @@ def golf():
     for (height, run), mark in zip(seen.groupby("drop_height"), "sD", strict=True):
         time, sigma = run.flight_time.values, run.flight_time_sigma.values
         measured(left, GRAVITY / 2 * np.sqrt(time[1:] * time[:-1]), time[1:] / time[:-1],
-                 np.hypot(sigma[1:], sigma[:-1]) / time[:-1], fmt=mark, color="0.6",
+                 np.hypot(sigma[1:], sigma[:-1]) / time[:-1], fmt=mark, color="0.45",
                  label=f"flights, {height} cm")  # fmt: skip
     left.set(xlabel="velocity [m/s]", ylabel="restitution of the sphere", ylim=(0.86, 0.93))
     ticks(left, [1.5, 2, 3, 4, 5, 6])
@@ -578,7 +591,7 @@ def golf():
 
 def resilience():
     """Rebound of rubbers whose loss factor a data sheet has; a ball that bounces for 40 s."""
-    made, (left, right) = panels()
+    made, (left, right) = panels("upper right", "lower right")
     one = vcor.read(ROOT / "examples" / "identification" / "resilience.nml")
     exponent = np.geomspace(0.01, 0.78, 60)
     loss = np.tan(pi * exponent / 2)
@@ -610,7 +623,7 @@ def resilience():
         ("red ball", "black ball"), data("rubber_balls").itertuples(), strict=True
     ):
         needed = np.tan(pi / 2 * exponent_of(row.resilience))
-        left.axhline(100 * row.resilience, color="0.6", lw=0.7, ls="--", marker="", zorder=1)
+        left.axhline(100 * row.resilience, color="0.45", lw=0.7, ls="--", marker="", zorder=1)
         at = 0.7 if row.resilience > 0.5 else 0.022
         left.annotate(name, (at, 100 * row.resilience + 1), color="0.4", fontsize=7)
         rows.append([name, "nothing", "none", "none", f"about {100 * row.resilience:.0f} %",

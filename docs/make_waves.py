@@ -44,7 +44,7 @@ LOOKS = [
     {"color": "C1", "linestyle": "--"},
     {"color": "C2", "linestyle": "-."},
     {"color": "C3", "linestyle": ":"},
-    {"color": "0.5", "linestyle": (0, (5, 1, 1, 1))},
+    {"color": "0.5", "linestyle": (0, (8, 2))},
 ]
 #: Points of a curve
 POINTS = 16
@@ -111,8 +111,8 @@ def table(plate):
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def curves(axes, plate):
-    """Distance from the exact restitution over thickness, and restitution over speed."""
+def curves(axes, plate, letters):
+    """Difference from the exact restitution against thickness, and restitution against speed."""
     upper, lower = axes
     _, thick, speeds, middle = PLATES[plate]
     over_thick = np.geomspace(thick[0], thick[-1], POINTS)
@@ -126,9 +126,9 @@ def curves(axes, plate):
         if name != "body":
             e = solve(plate, name, over_thick, speeds[1:2])[0]
             upper.plot(over_thick, abs(e - exact)[:, 0], **look)
-    upper.set(title=f"{plate}, {speeds[1]} m/s", xlabel="thickness [mm]", xscale="log",
+    upper.set(title=f"({letters[0]}) {plate}, {speeds[1]} m/s", xlabel="thickness [mm]", xscale="log",
               yscale="log", ylim=(1e-4, 1))  # fmt: skip
-    lower.set(title=f"{plate}, {middle} mm", xlabel="velocity [m/s]", xscale="log")
+    lower.set(title=f"({letters[1]}) {plate}, {middle} mm", xlabel="velocity [m/s]", xscale="log")
     for axis, ticks in ((upper, thick), (lower, speeds)):
         axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         axis.xaxis.set_minor_locator(NullLocator())
@@ -138,9 +138,9 @@ def figure():
     """The curves of all plates."""
     made = Figure(figsize=(PAGE / 2.54, 10.5 / 2.54), layout="constrained")
     axes = made.subplots(2, 3)
-    for column, plate in zip(axes.T, PLATES, strict=True):
-        curves(column, plate)
-    axes[0, 0].set_ylabel("distance from body")
+    for column, plate, letters in zip(axes.T, PLATES, ("ad", "be", "cf"), strict=True):
+        curves(column, plate, letters)
+    axes[0, 0].set_ylabel("difference from body")
     axes[1, 0].set_ylabel("restitution of the sphere")
     made.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     return made

@@ -199,7 +199,7 @@ def test_caution_has_hatching_of_its_own():
         made = figure([data])
         assert texts(made)[-2:] == [
             "outside of the model's validity",
-            "with caution: off by per cents",
+            "with caution: off by a few per cent",
         ]
     spans = [patch for patch in figure([found]).axes[0].patches if patch.get_hatch()]
     assert [patch.get_hatch() for patch in spans] == ["/////", "//"]
@@ -511,7 +511,7 @@ def test_a_script_stands_in_no_package_s_way(results, tmp_path, capsys):
     for name in ("vcor", "numpy"):
         with pytest.raises(SystemExit):
             main([str(results / "sweep.h5"), "--script", "--output", f"{tmp_path}/{name}.svg"])
-        assert f"a script {name}.py would stand in the way" in capsys.readouterr().err
+        assert f"a script {name}.py would hide" in capsys.readouterr().err
         assert not (tmp_path / f"{name}.py").exists()
 
 

@@ -174,7 +174,7 @@ def figure():
             axis.loglog(*zip(*points, strict=True), label=series.name, **look)
         axis.set(xlabel="time step [\N{MICRO SIGN}s]", ylabel="error of the COR", ylim=(1e-9, 1e-1))
         axis.xaxis.set_major_formatter("{x:g}")
-        made.legend(ncols=2, loc="outside lower center")
+        made.legend(ncols=2, loc="outside upper center")
         text = io.StringIO()
         made.savefig(text, format="svg", metadata={"Date": None})
     return text.getvalue()

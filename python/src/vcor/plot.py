@@ -52,6 +52,8 @@ STYLE = Path(__file__).with_name("vcor.mplstyle")
 KINDS = ("history", "loop", "moduli", "sweep", "map")
 #: Width of a column and of a page, height of a panel, and least width of panels side by side [cm]
 COLUMN, PAGE, HEIGHT, NARROW = 8.5, 17.0, 6.5, 5.0
+#: Grey of the hatching, light behind curves and dark enough for print
+HATCH = "0.65"
 #: Most levels of a map by their number
 _MOST_LEVELS = 50
 #: Widths that are drawn [cm], and units of length [cm]
@@ -68,7 +70,7 @@ _WORDS = {
 }
 #: Hatching by what the column validity says, and its text
 _HATCHES = {"outside": ("/////", "outside of the model's validity"),
-            "caution": ("//", "with caution: off by per cents")}  # fmt: skip
+            "caution": ("//", "with caution: off by a few per cent")}  # fmt: skip
 #: Most lines of a text in a legend
 _MOST_LINES = 20
 #: Letters of a label for an inch, and the width of a panel that its numbers take [in]
@@ -503,7 +505,7 @@ def _hatch_span(axis: Axes, lines: list[xr.Dataset], across: str, factor: float)
         steps = np.diff(np.concatenate([[0], (found & rest).astype(int), [0]]))
         rest &= ~found
         for start, end in zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True):
-            axis.axvspan(edges[start], edges[end], fill=False, hatch=lines_of, ec="0.8", lw=0,
+            axis.axvspan(edges[start], edges[end], fill=False, hatch=lines_of, ec=HATCH, lw=0,
                          label=text, zorder=0)  # fmt: skip
 
 
