@@ -228,7 +228,7 @@ contains
             reason = 'the material, without equilibrium modulus, does not push it back'
          if (too_light /= '') reason = too_light
          call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &
-            //time//' s all motion has died out in contact; '//reason)
+            //time//' s all motion has decayed in contact; '//reason)
       end if
    end subroutine end_of
 

@@ -43,7 +43,7 @@ enum {
 enum {
    VCOR_SEPARATED = 0,      /* the force returned to zero: the normal end */
    VCOR_NO_SEPARATION = 1,  /* end_time came first */
-   VCOR_STICKS = 2,         /* all motion died out in contact */
+   VCOR_STICKS = 2,         /* all motion decayed in contact */
    VCOR_INVALID = 3,        /* the values of the point make no impact */
    VCOR_FAILED = 4,         /* the numerical solution failed */
    VCOR_RESTS = 5           /* its weight keeps the sphere in contact for good */

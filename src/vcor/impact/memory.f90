@@ -160,8 +160,8 @@ contains
          if (now%error < terms%error) terms = now
          if (terms%error <= max(accuracy, rounding)) exit
       end do
-      ! the motion remembers the force by modes only: the constant becomes a mode of a very slow
-      ! rate
+      ! the memory of the motion consists of modes only: the constant becomes a mode of a very
+      ! slow rate
       if (.not. terms%equilibrium > 0.0_wp) return
       terms%moduli = [terms%moduli, terms%equilibrium]
       terms%rates = [terms%rates, slowest/window]

@@ -430,7 +430,7 @@ contains
       case (contact_lasting)
          kind%message = 'the bodies do not separate within solver.end_time'
       case (contact_sticking)
-         kind%message = 'the sphere sticks: all motion dies out in contact'
+         kind%message = 'the sphere sticks: all motion decays in contact'
       case default
          call solve_point(sweep, kind%first, worker, outcome, trouble)
          kind%message = 'no result'

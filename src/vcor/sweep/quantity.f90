@@ -45,7 +45,7 @@ module vcor_sweep_quantity
       status_t(contact_lasting, 'no_separation', &
       'end_time came before the force returned to zero', 'a larger solver.end_time; a thicker ' &
       //'plate where the inelasticity is above 3'), &
-      status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
+      status_t(contact_sticking, 'sticks', 'all motion decayed in contact', 'nothing: the plate ' &
       //'is too light for it (inelasticity above about 5), or the material flows'), &
       status_t(point_invalid, 'invalid', &
       'in a sweep: the values of the point make no impact', &
