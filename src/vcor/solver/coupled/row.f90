@@ -4,8 +4,8 @@
 !>
 !> The springs stand at the two Gauss points of equal parts of the elements of the hats: products of
 !> hats are then integrated exactly by the springs, and the response stays passive. With equidistant
-!> springs it does not, and short steps are unstable. The elements are graded towards the axis, where the
-!> waves of the response are cylindrical.
+!> springs it does not, and short steps are unstable. The elements are graded towards the axis,
+!> where the waves of the response are cylindrical.
 module vcor_solver_coupled_row
    use vcor_error, only : error_internal, error_t, raise
    use vcor_kinds, only : wp
