@@ -36,6 +36,8 @@ module vcor_app_sweep
    real(wp), parameter :: time_without_file = 1.0_wp
    !> Minimum time between two progress lines [s]
    real(wp), parameter :: time_between_lines = 0.2_wp
+   !> Time left from which on it is said once where stderr is no terminal, such as a log [s]
+   real(wp), parameter :: long = 10.0_wp
    !> Length of the progress line
    integer, parameter :: width = 72
 
@@ -48,6 +50,8 @@ module vcor_app_sweep
       type(restart_t) :: file
       !> Whether to show progress on the terminal
       logical :: shows = .false.
+      !> Where it is none: whether the time that is left is still to be said
+      logical :: tells = .false.
       !> Points of the sweep
       integer :: points = 0
       !> Points done
@@ -116,6 +120,7 @@ contains
       watch%done_before = watch%done
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
+      watch%tells = .not. (watch%shows .or. request%quiet)
    end subroutine begin
 
    !> Write the results of a sweep
@@ -362,7 +367,8 @@ contains
       !> Set if they cannot be kept; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: now
+      character(len=:), allocatable :: line
+      real(wp) :: now, rate, left
 
       now = clock()
       self%done = self%done + size(places)
@@ -372,26 +378,19 @@ contains
          call create_restart(self%file, self%path, self%hash, summary, error)
       end if
       if (allocated(error)) return
+      rate = real(self%done - self%done_before, wp)/max(now - self%start, epsilon(now))
+      left = real(self%points - self%done, wp)/rate
+      line = integer_text(self%done)//' of '//integer_text(self%points)//' points, ' &
+         //integer_text(int(100.0_wp*real(self%done, wp)/real(self%points, wp)))//' %, ' &
+         //rate_text(rate)//', '//time_text(left)//' left'
       if (self%shows .and. now - self%shown > time_between_lines) then
-         call show(self, now - self%start)
+         call write_terminal(achar(13)//'  '//line//repeat(' ', max(0, width - len(line))))
          self%shown = now
+      else if (self%tells .and. now - self%start > time_without_file) then
+         self%tells = .false.
+         if (left > long) call write_terminal('vcor: note: '//line//new_line('a'))
       end if
    end subroutine finished
-
-   !> Show the progress of the sweep
-   subroutine show(self, time)
-      type(watch_t), intent(in) :: self
-      !> Time since the start [s]
-      real(wp), intent(in) :: time
-
-      character(len=:), allocatable :: line
-      real(wp) :: rate
-      rate = real(self%done - self%done_before, wp)/max(time, epsilon(time))
-      line = '  '//integer_text(self%done)//' of '//integer_text(self%points)//' points, ' &
-         //integer_text(int(100.0_wp*real(self%done, wp)/real(self%points, wp)))//' %, ' &
-         //rate_text(rate)//', '//time_text(real(self%points - self%done, wp)/rate)//' left'
-      call write_terminal(achar(13)//line//repeat(' ', max(0, width - len(line))))
-   end subroutine show
 
    !> A rate as text
    function rate_text(rate) result(text)

@@ -3,6 +3,7 @@
 import os
 import pty
 import random
+import re
 import shutil
 import signal
 import struct
@@ -326,6 +327,20 @@ def test_progress(long):
     # nothing of it is left
     assert lines[-2].strip().startswith("vcor: error: ") or lines[-1].strip() == ""
     assert text.split("vcor: error")[0].endswith("\r")
+
+
+def test_a_log_is_told_once(vcor):
+    """Where stderr is no terminal one line says how long it takes, unless that is short."""
+    write_long_sweep(vcor, 100.0)
+    process = begin(vcor)
+    line = process.stderr.readline()
+    assert re.fullmatch(r"vcor: note: \d+ of \d+ points, \d+ %, \d+/s, \d+:\d\d:\d\d left\n", line)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate() == ("", "")
+    process = begin(vcor, "--quiet", folder="quiet")
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate() == ("", "")
 
 
 def test_no_progress(long):
