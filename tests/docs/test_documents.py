@@ -184,7 +184,7 @@ def test_the_walk_from_dma_to_restitution(folder):
     rows = [line for line in (folder / "walk/drop_summary.csv").read_text().splitlines() if line[:1] != "#"]
     names, *rows = [row.split(",") for row in rows]
     cor = [float(row[names.index("cor")]) for row in rows]
-    shown = re.search(r"with ([\d.]+) at 10 C; the coefficient falls to ([\d.]+) at 60 C", text_of(page))
+    shown = re.search(r"with ([\d.]+) at 10 °C; the coefficient falls to ([\d.]+) at 60 °C", text_of(page))
     assert [f"{cor[0]:.3f}", f"{cor[-1]:.2f}"] == [shown[1], shown[2]]
     head = blocks(page, "sh")[0]
     assert shell(folder, head) in text_of(page)

@@ -80,7 +80,7 @@ def signed(error, floor):
 
 def convergence_table(group):
     """Errors and orders of several series with the same steps."""
-    head = ["step, us"]
+    head = ["step, µs"]
     for series in group:
         head += [series.name.split(", ", 1)[1], "error", "order"]
     columns = [
