@@ -1,5 +1,5 @@
 #!/bin/sh
-# Fig. 4 of the paper: COR of the SLS impact over the velocity, beta as a parameter and
+# Fig. 4 of the paper: COR of the SLS impact against velocity, beta as a parameter and
 # alpha/beta = 1/4. The two change together, so each beta is a run of its own.
 # Prints beta [1/s], velocity [m/s] and COR, a line per impact. Needs vcor in the PATH.
 set -e

@@ -1,4 +1,4 @@
-"""Fig. 8 of the paper: COR of BUTYL-B252 over the velocity, three models of the same rubber.
+"""Fig. 8 of the paper: COR of BUTYL-B252 against velocity, three models of the same rubber.
 
 Writes the cases with f90nml, solves them in one call of vcor and reads the summaries with pandas.
 Needs vcor in the PATH.
