@@ -16,6 +16,7 @@ import matplotlib.style
 import numpy as np
 import pytest
 from conftest import PAPER, ROOT, SWEEPS
+from matplotlib.text import Text
 
 import vcor
 from vcor import _command
@@ -59,8 +60,8 @@ def test_a_history(results):
     summary = vcor.open(results / "sls_ghost.h5")
     end = 1e3 * float(summary.contact_time)
     assert axis.get_xlabel() == "time [ms]"
-    assert f"{end:.4g} ms" in axis.get_title()
-    indentation, velocity, force = curves(axis)
+    assert texts(made)[-1] == f"t₀ = {end:.4g} ms"
+    indentation, velocity, force, _ = curves(axis)
     for line, at_end in (
         (indentation, summary.residual_ratio),
         (velocity, summary.cor),
@@ -125,9 +126,37 @@ def test_moduli(results):
     rubber = vcor.read(PAPER / "sls.nml").material("rubber")
     line = relaxation.lines[0]
     np.testing.assert_allclose(line.get_ydata(), 1e-6 * rubber.relaxation(line.get_xdata()))
-    assert len(curves(moduli)) == 2 and len(curves(tangent)) == 1
+    # with what is marked
+    assert len(curves(moduli)) == 3 and len(curves(tangent)) == 1
     both = figure([results / "sls_material.h5", results / "butyl_prony_material.h5"])
     assert len(both.axes) == 4 and len(texts(both)) == 2
+
+
+@pytest.mark.parametrize("width", [4.25, 6, 8.5, 10, 17])
+def test_no_text_lies_on_another(results, width):
+    """Of the legend, the letters of the panels, what is marked, and the numbers at the end."""
+    for name in ("sls_material.h5", "sls_ghost.h5"):
+        made = figure([results / name], width=width)
+        made.draw_without_rendering()
+        (legend,) = made.legends
+        for axis in made.axes:
+            heads = [axis.get_title(loc=where) for where in ("left", "center", "right")]
+            found = [
+                one
+                for one in axis.findobj(Text)
+                if one.get_text() and (one.get_text() in heads or one in axis.texts)
+            ]
+            boxes = [one.get_window_extent() for one in found]
+            assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+            assert not any(one.overlaps(legend.get_window_extent()) for one in boxes)
+            # beyond the markers at the edge
+            edge = axis.get_window_extent().x1
+            marker = max(line.get_markersize() for line in axis.lines) / 2 * made.dpi / 72
+            assert all(
+                box.x0 > edge + marker
+                for box, one in zip(boxes, found, strict=True)
+                if one in axis.texts
+            )
 
 
 def test_a_sweep(results):

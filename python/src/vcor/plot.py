@@ -307,15 +307,15 @@ def _history(wishes: _Wishes) -> Figure:
             if i == 0:
                 _points(axis, wishes.data, "time", name, factor, 1.0 / size)
         if one and ended:
-            axes[0].axvline(end, color="0.5", lw=0.6, ls=":")
-            axes[0].set_title(f"t₀ = {end:.4g} {unit}")
+            axes[0].axvline(end, color="0.5", lw=0.6, ls=":", label=f"t₀ = {end:.4g} {unit}")
             residual = result.number("residual_ratio")
             # lines where the values are, words far enough apart
             room = math.copysign(max(0.0, 0.16 - abs(residual - cor)) / 2, residual - cor)
             for y, shift, words in ((cor, -room, f"COR {cor:.4g}"), (residual, room, "")):
                 axes[0].axhline(y, color="0.5", lw=0.6, ls=":")
-                axes[0].annotate(words or f"{y:.4g}", (1.02, y + shift), va="center",
-                                 xycoords=("axes fraction", "data"))  # fmt: skip
+                axes[0].annotate(words or f"{y:.4g}", (1, y + shift), (5, 0), va="center",
+                                 xycoords=("axes fraction", "data"),
+                                 textcoords="offset points")  # fmt: skip
     for axis, label in zip(axes, ["normalised response"] if one else names.values(), strict=True):
         axis.set(xlabel=f"time [{unit}]", ylabel=label)
         axis.set_xlim(0, factor * max(course["time"][-1] for course in courses))
@@ -402,10 +402,9 @@ def _moduli(wishes: _Wishes) -> Figure:
             mark = ends[k > 0]
             if np.isfinite(mark) and not (single and k > 1) and (several or i == 0):
                 color = axis.lines[-1].get_color() if several else "0.5"
-                axis.axvline(mark, color=color, lw=0.6, ls=":")
-                if not several:
-                    time, shown = _scale("s", mark) if k == 0 else (1.0, "rad/s")
-                    axis.set_title(f"{'ωₘᵢₙ' if k else 't₀'} = {time * mark:.4g} {shown}")
+                time, shown = _scale("s", mark) if k == 0 else (1.0, "rad/s")
+                said = f"{'ωₘᵢₙ' if k else 't₀'} = {time * mark:.4g} {shown}"
+                axis.axvline(mark, color=color, lw=0.6, ls=":", label=None if several else said)
             if i == 0:
                 _points(axis, wishes.data, over, name, 1.0, fy)
     for k, (axis, name) in enumerate(zip(axes, columns, strict=True)):
