@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from conftest import ROOT
 
 import vcor
-from vcor.materials import identification
+from vcor.materials import identification, search
 from vcor.materials.data import read_data
 from vcor.materials.limits import Fit
 from vcor.materials.observations import observations, read_columns
@@ -136,6 +137,16 @@ def test_record_of_force_with_unknown_start():
     for one, value in zip(found.estimates, TRUTH["sls"].values(), strict=True):
         assert one.value == pytest.approx(value, rel=2e-2)
     assert found.relative_error < 2e-3
+
+
+def test_a_long_fit_says_so(monkeypatch):
+    case, data = guess("sls"), columns()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        vcor.identify(case, data, ["rubber.alpha"])
+    monkeypatch.setattr(search, "LONG", 0.0)
+    with pytest.warns(UserWarning, match=r"starts took \d+ s; the fit takes 10 to 60 times"):
+        vcor.identify(case, data, ["rubber.alpha"])
 
 
 def test_a_ramp_of_temperature_at_one_frequency(tmp_path):

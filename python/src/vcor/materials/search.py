@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+import time
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -23,6 +25,8 @@ STEP = 0.02
 STRIDE = 1e-3
 #: Points that a fit may start from, and how many of them do
 STARTS, REFINED = 64, 4
+#: Time of the starts that is said, as the rest takes long then [s]
+LONG = 2.0
 #: Parts in which the starts are tried
 PARTS = 32
 #: Logarithm of the factor from the first guess beyond which parameters are not followed
@@ -180,6 +184,7 @@ class Problem:
         x = self.guess
         spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
         # of impacts that fail slowly one is enough; all in parts, for the bar and Ctrl-C
+        begin = time.perf_counter()
         for impacts in self.impacts:
             good = []
             for part in np.array_split(spread, PARTS):
@@ -189,6 +194,9 @@ class Problem:
         starts = np.vstack([x, x + spread])
         found_there = np.vstack([self.predict(part) for part in np.array_split(starts, PARTS)])
         sums = np.sum(((found_there - self.value) / self.sigma) ** 2, axis=1)
+        if (seconds := time.perf_counter() - begin) > LONG:
+            warnings.warn(f"{self.case.name}: {len(starts)} starts took {seconds:.0f} s; the fit "
+                          "takes 10 to 60 times as long", stacklevel=2)  # fmt: skip
         order = np.argsort(np.where(np.isnan(sums), np.inf, sums), kind="stable")[:REFINED]
         if not np.isfinite(sums[order[0]]):
             raise NumericalError(f"{self.case.name}: no start of the parameters has a result for "
