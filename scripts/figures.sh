@@ -44,8 +44,8 @@ cd "$scratch"
 PATH="$scratch/bin:$PATH" bash -euo pipefail commands.sh >"$scratch/screen" \
    || fail "a command of docs/gallery.md failed"
 [ ! -e plots ] || "$PYTHON" -c '
-from vcor.plot import main
-for call in open("plots").read().split("\0\0")[:-1]: main(call.split("\0"))
+from vcor._command import call
+for one in open("plots").read().split("\0\0")[:-1]: call("plot", one.split("\0"))
 ' >"$scratch/screen" || fail "a figure of docs/gallery.md failed"
 figures=("$scratch"/*.svg)
 cp "${figures[@]}" "$target"

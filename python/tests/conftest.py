@@ -70,13 +70,13 @@ class Shell:
                 [os.environ["VCOR"], *words], capture_output=True, encoding="utf-8", check=False
             )
             return SimpleNamespace(code=done.returncode, out=done.stdout, err=done.stderr)
-        from vcor.materials.fit_command import main
+        from vcor._command import call
 
         self._patch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(input.encode())))
         self._capsys.readouterr()
         code = 0
         try:
-            main(words[1:])
+            call("fit", words[1:])
         except SystemExit as leaving:
             code = leaving.code
         out, err = self._capsys.readouterr()

@@ -149,7 +149,7 @@ def test_an_error_names_its_cause(error, line, monkeypatch, capfd):
     def fail():
         raise error
 
-    monkeypatch.setattr(cards, "main", fail)
+    monkeypatch.setattr(cards, "_parser", fail)
     with pytest.raises(SystemExit) as end:
         _command.card()
     assert end.value.code == 4

@@ -9,7 +9,7 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor.exchange import cards
+from vcor import _command
 from vcor.exchange.card_formats import FORMATS, GAS, UNITS, Card
 
 ALL = list(FORMATS)
@@ -451,10 +451,10 @@ def command(capsys, *words, code=0):
     """Output of vcor card, or its line of error."""
     if code:
         with pytest.raises(SystemExit) as caught:
-            cards.main(list(map(str, words)))
+            _command.call("card", list(map(str, words)))
         assert caught.value.code == code
         return capsys.readouterr().err
-    cards.main(list(map(str, words)))
+    _command.call("card", list(map(str, words)))
     return capsys.readouterr()
 
 
@@ -687,7 +687,7 @@ def test_degrees_celsius(tmp_path, code, capsys):
         assert found.shift["reference_temperature"] == pytest.approx(kelvin)
         said = any("not in K: taken as degrees Celsius" in one for one in found.remarks)
         assert said == (given < 100 and not options)
-    cards.main([str(tmp_path / "card.inp"), "--for", code])
+    _command.call("card", [str(tmp_path / "card.inp"), "--for", code])
     assert "taken as degrees Celsius" in capsys.readouterr().err
 
 

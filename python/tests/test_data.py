@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import vcor
+from vcor import _command
 from vcor.materials import grid
 from vcor.materials.data import columns_option, curves, read_data, read_moduli
 from vcor.materials.names import read_head
-from vcor.materials.table import main
 from vcor.materials.tables import Choice
 
 OMEGA = np.geomspace(1, 1000, 7)
@@ -611,7 +611,7 @@ def test_everything_taken_is_in_one_line(tmp_path):
 
 
 def printed(capsys, *words):
-    main([*map(str, words)])
+    _command.call("table", [*map(str, words)])
     return capsys.readouterr()
 
 
@@ -642,7 +642,7 @@ def test_the_table_of_one_temperature(tmp_path, capsys):
     found = printed(capsys, path, "--temperature", "-5C")
     assert len(found.out.splitlines()) == len(OMEGA) + 1
     with pytest.raises(SystemExit) as ended:
-        main([str(path)])
+        _command.call("table", [str(path)])
     assert ended.value.code == 2 and "268.15 K, 293.15 K" in capsys.readouterr().err
 
 
@@ -658,7 +658,7 @@ def test_data_that_make_no_table(tmp_path, capsys):
     path = tmp_path / "raw.csv"
     path.write_text(table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n"))
     with pytest.raises(SystemExit) as ended:
-        main([str(path)])
+        _command.call("table", [str(path)])
     assert ended.value.code == 3 and "vcor fit" in capsys.readouterr().err
 
 

@@ -14,7 +14,8 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor.exchange import codes, export
+from vcor import _command
+from vcor.exchange import codes
 from vcor.exchange.contact_laws import HERTZ, LINEAR, VISCOELASTIC
 
 VELOCITIES = np.geomspace(0.05, 5, 5)
@@ -302,16 +303,18 @@ def test_laws_that_are_not_there():
 
 def test_command(tmp_path, capsys):
     words = [str(BEADS), "--for", "rebound", "--velocities", "0.1:1:4"]
-    export.main(words)
+    _command.call("export", words)
     said = capsys.readouterr().out
     assert "def restitution(" in said
-    export.main([*words, "--output", str(tmp_path)])
+    _command.call("export", [*words, "--output", str(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == {
         f"granular_pair_rebound.{end}" for end in ("py", "c", "svg")
     }
     assert (tmp_path / "granular_pair_rebound.py").read_text() == said
     assert "written" in capsys.readouterr().out
-    export.main([*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"])
+    _command.call(
+        "export", [*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"]
+    )
     assert (tmp_path / "granular_pair_master.csv").exists()
 
 
@@ -330,7 +333,7 @@ def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
     given |= dict(zip(words[::2], words[1::2], strict=False))
     flags = [word for word in words if word == "--master"]
     with pytest.raises(SystemExit) as caught:
-        export.main([str(BEADS), *[x for pair in given.items() for x in pair], *flags])
+        _command.call("export", [str(BEADS), *[x for pair in given.items() for x in pair], *flags])
     error = capsys.readouterr().err
     assert (caught.value.code, error.count("\n")) == (code, 1)
     assert said in error
@@ -568,11 +571,13 @@ def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
     Path("rubber.nml").write_text(groups[0])
     Path("glass.nml").write_text(groups[1])
     tail = ["--for", "lammps", "--velocities", "0.1:1:3"]
-    export.main(["wall.nml", "rubber.nml", "glass.nml", *tail])
+    _command.call("export", ["wall.nml", "rubber.nml", "glass.nml", *tail])
     assert str(vcor.export(pairs[0], "lammps", np.geomspace(0.1, 1, 3))).partition("case:")[0] in (
         capsys.readouterr().out
     )
-    export.main(["wall.nml", "beads.nml", "rubber.nml", "glass.nml", *tail, "--output", "out"])
+    _command.call(
+        "export", ["wall.nml", "beads.nml", "rubber.nml", "glass.nml", *tail, "--output", "out"]
+    )
     assert {path.name for path in Path("out").iterdir()} == {
         "mixture_lammps.in",
         "mixture_lammps.svg",
@@ -580,7 +585,7 @@ def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
     assert "pair_coeff  1 1" in Path("out/mixture_lammps.in").read_text()
     capsys.readouterr()
     with pytest.raises(SystemExit) as caught:
-        export.main(["glass.nml", "wall.nml", *tail])
+        _command.call("export", ["glass.nml", "wall.nml", *tail])
     assert caught.value.code == 2
     assert "glass.nml: a file with nothing but &material groups" in capsys.readouterr().err
 

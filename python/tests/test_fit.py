@@ -8,7 +8,7 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
-from vcor import uncertainty_command
+from vcor import _command
 from vcor.materials import fit as fit_module
 
 DATA = ROOT / "examples" / "soft_rubber_data.csv"
@@ -120,9 +120,10 @@ def test_json_of_the_program(program, tmp_path, model):
     case = vcor.Case(text.replace("'rubber'", "'soft rubber'"))
     (tmp_path / "case.nml").write_text(case.text())
     pytest.importorskip("SALib", reason="vcor uncertainty needs it, vcor.fit does not")
-    uncertainty_command.main(
+    _command.call(
+        "uncertainty",
         [str(tmp_path / "case.nml"), "--covariance", str(tmp_path / "a" / "fit.json")]
-        + ["--samples", "64", "--quantity", "cor", "--output", str(tmp_path), "--quiet"]
+        + ["--samples", "64", "--quantity", "cor", "--output", str(tmp_path), "--quiet"],
     )
     spread = json.loads((tmp_path / "case_uncertainty.json").read_text())["quantities"]["cor"]
     slopes = np.array([spread["elasticity"].get(f"soft rubber.{one['name']}", 0.0) / one["value"]

@@ -12,6 +12,7 @@ import pytest
 from conftest import ROOT
 
 import vcor
+from vcor import _command
 from vcor.materials import identification, search
 from vcor.materials.data import read_data
 from vcor.materials.limits import Fit
@@ -514,7 +515,7 @@ def test_options_that_are_wrong(tmp_path, capsys, words, said):
     (tmp_path / "rubber.nml").write_text(guess("sls").text())
     with pytest.raises(SystemExit) as ended:
         files = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv"]
-        identification.main([*map(str, files), *words])
+        _command.call("identify", [*map(str, files), *words])
     assert ended.value.code == 2 and said in capsys.readouterr().err
 
 
@@ -573,7 +574,7 @@ def test_command_writes_case_numbers_and_figure(tmp_path, capsys):
     words = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv", "--free"]
     words += ["rubber.alpha,rubber.beta,rubber.glassy_modulus", "--error", "cor=1%"]
     words += ["--error", "contact_time=2%", "--output", tmp_path / "out"]
-    identification.main([str(word) for word in words])
+    _command.call("identify", [str(word) for word in words])
     said = capsys.readouterr().out
     assert "rubber.alpha [1/s]" in said
     speed = float(re.search(r"help most: \w+ at ([\d.]+) m/s", said)[1])
@@ -605,9 +606,9 @@ def test_one_datum(tmp_path, capsys):
     words = [str(tmp_path / name) for name in ("ball.nml", "one.csv")]
     words += ["--free", "rubber.exponent", "--output", str(tmp_path / "out")]
     with pytest.raises(SystemExit):
-        identification.main(words)
+        _command.call("identify", words)
     assert capsys.readouterr().err.endswith("or their errors: --error resilience=0.01\n")
-    identification.main([*words, "--error", "resilience=1%"])
+    _command.call("identify", [*words, "--error", "resilience=1%"])
     said = capsys.readouterr().out
     assert "as many data as parameters: nothing tests the model (0 degrees of freedom)" in said
     assert "chi2" not in said and "AIC" not in said and "-0.00" not in said
@@ -640,7 +641,7 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
     words = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv", "--free", "rubber.beta"]
     words += ["--model", "prony:x"]
     with pytest.raises(SystemExit) as ended:
-        identification.main([str(word) for word in words])
+        _command.call("identify", [str(word) for word in words])
     said = capsys.readouterr().err
     assert ended.value.code == 2
     assert "prony:x" in said

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import vcor
+from vcor import _command
 from vcor.materials import master
 from vcor.materials.data import read_moduli
 from vcor.materials.shifting import Curve
@@ -101,7 +102,7 @@ def test_a_file_with_a_temperature_in_its_name(tmp_path):
 
 def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
     path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 5))
-    master.main([str(path), "--reference", "20C", "--output", str(tmp_path)])
+    _command.call("master", [str(path), "--reference", "20C", "--output", str(tmp_path)])
     assert "wlf_c1" in capsys.readouterr().out
     written = json.loads((tmp_path / "raw_master.json").read_text())
     assert written["laws"][0]["law"] == "WLF"
@@ -146,7 +147,7 @@ def test_a_fit_shifts_by_the_same_code(tmp_path, capsys, program):
     path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 5), noise=0.01)
     model = {"model": "mittag_leffler", "name": "rubber"}
     fit = vcor.fit(path, **model)
-    master.main([str(path), "--output", str(tmp_path)])
+    _command.call("master", [str(path), "--output", str(tmp_path)])
     other = vcor.fit(tmp_path / "raw_master.csv", **model)
     assert fit.group.count("\n   wlf_c1 = ") == 1
     assert fit.group == other.group or fit["exponent"] == pytest.approx(other["exponent"], rel=1e-6)
@@ -172,7 +173,7 @@ def test_misfits_of_a_broken_master_curve_are_not_noise(tmp_path, capsys):
             path.write_text(table(f"T [C],{HEAD}", temperatures, made))
         else:
             file_of(path, temperatures, noise=0.01)
-        master.main([str(path), "--vertical-shift", "no", "--output", str(tmp_path)])
+        _command.call("master", [str(path), "--vertical-shift", "no", "--output", str(tmp_path)])
         later = vcor.fit(tmp_path / "raw_master.csv", **model)
         assert later.follows == (made is moduli)
         if later.follows:
@@ -210,10 +211,10 @@ def test_columns_and_units_and_what_was_taken(tmp_path, capsys):
     path.write_text(table("T [C],rate,a,b\n", [0, 10, 20]))
     words = [str(path), "--output", str(tmp_path), "--reference", "10C", "--units", "rad/s,Pa"]
     with pytest.raises(SystemExit):
-        master.main(words)
+        _command.call("master", words)
     assert "--columns" in capsys.readouterr().err
     words += ["--columns", "frequency=rate", "--columns", "storage_modulus=a,loss_modulus=b"]
-    master.main(words)
+    _command.call("master", words)
     taken = capsys.readouterr().out.splitlines()[0]
     assert "odd.csv: 36 points: temperature from 'T [C]', frequency from 'rate'" in taken
     plain = tmp_path / "plain.csv"
@@ -314,7 +315,9 @@ def test_shear_moduli_become_tensile_ones(tmp_path):
         vcor.master(path)
     found = vcor.master(path, poisson_ratio=0.4)
     assert np.allclose(found.curve(), tensile.curve(), rtol=1e-6)
-    master.main([str(path), "--poisson-ratio", "0.4", "--output", str(tmp_path), "--quiet"])
+    _command.call(
+        "master", [str(path), "--poisson-ratio", "0.4", "--output", str(tmp_path), "--quiet"]
+    )
     assert (tmp_path / "raw_master.csv").exists()
 
 
@@ -424,8 +427,8 @@ def test_a_vertical_shift_may_be_given(tmp_path, capsys):
     path.write_text(table(f"T [C],{HEAD}", [0, 10, 20]))
     words = [str(path), "--output", str(tmp_path), "--vertical-shift"]
     for given in ("yes", "no"):
-        master.main([*words, given])
+        _command.call("master", [*words, given])
         assert ("vertical_shift = .true." in capsys.readouterr().out) == (given == "yes")
     with pytest.raises(SystemExit):
-        master.main([*words, "maybe"])
+        _command.call("master", [*words, "maybe"])
     assert "--vertical-shift" in capsys.readouterr().err

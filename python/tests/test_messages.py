@@ -99,7 +99,7 @@ def test_the_same_message_of_a_function_and_of_its_command(tmp_path, capsys):
         vcor.fit(path)
     assert "expected poisson_ratio, by which" in str(error.value)
     with pytest.raises(SystemExit):
-        _command.importlib.import_module("vcor.materials.fit_command").main([str(path)])
+        _command.call("fit", [str(path)])
     assert "expected --poisson-ratio, by which" in capsys.readouterr().err
     with pytest.raises(vcor.UsageError) as error:
         vcor.fit(path, poisson_ratio=0.7)
@@ -108,6 +108,8 @@ def test_the_same_message_of_a_function_and_of_its_command(tmp_path, capsys):
 
 def test_a_failed_command_leaves_no_options_behind(tmp_path, capsys):
     with pytest.raises(SystemExit):
-        vcor.plot.main([str(tmp_path / "nothing.h5"), "--quantity", "cor", "--kind", "history"])
+        _command.call(
+            "plot", [str(tmp_path / "nothing.h5"), "--quantity", "cor", "--kind", "history"]
+        )
     assert "vcor: error: " in capsys.readouterr().err
     assert _text.option("quantities") == "quantities"

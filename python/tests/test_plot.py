@@ -21,7 +21,7 @@ from matplotlib.text import Text
 import vcor
 from vcor import _command
 from vcor.materials.data import read_data
-from vcor.plot import KINDS, STYLE, _find, _label_decades, figure, main, save
+from vcor.plot import KINDS, STYLE, _find, _label_decades, figure, save
 
 
 @pytest.fixture(scope="module")
@@ -423,8 +423,9 @@ TITLE = "a_b {c} <d> & \"e\" 'f' h^2 @x ~y `z` $HOME$ $\\frac$ 100% α \\n"
 def test_texts_stand_for_themselves(results, tmp_path):
     """No title is a formula, none leaves its line, and none is cut."""
     files = [results / "sweep.h5", results / "soft.h5"]
-    main([*map(str, files), "--legend", TITLE, "--legend", "plain", "--output", f"{tmp_path}/a.svg",
-          "--quantity", "cor,max_force", "--quiet"])  # fmt: skip
+    words = ["--legend", TITLE, "--legend", "plain", "--output", f"{tmp_path}/a.svg"]
+    words += ["--quantity", "cor,max_force", "--quiet"]
+    _command.call("plot", [*map(str, files), *words])
     ElementTree.parse(tmp_path / "a.svg")
     made = figure(files, legends=[TITLE, "ä" * 300], quantities=["cor", "max_force"])
     shown = texts(made)
@@ -518,7 +519,7 @@ def test_room_for_the_ticks(results, tmp_path, velocity):
 @pytest.mark.parametrize("ending", ["svg", "pdf", "png"])
 def test_formats(results, tmp_path, ending, capsys):
     target = tmp_path / f"figure.{ending}"
-    main([str(results / "sweep.h5"), "--output", str(target)])
+    _command.call("plot", [str(results / "sweep.h5"), "--output", str(target)])
     assert capsys.readouterr().out == f"written {target}\n"
     start = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}[ending]
     first = target.read_bytes()
@@ -529,7 +530,7 @@ def test_formats(results, tmp_path, ending, capsys):
 
 def test_a_script_makes_the_same_figure(results, tmp_path):
     words = ["--log", "x", "--range", "y=0:1", "--legend", "it's one", "--script", "--quiet"]
-    main([str(results / "sweep.h5"), *words, "--output", str(tmp_path / "a.svg")])
+    _command.call("plot", [str(results / "sweep.h5"), *words, "--output", str(tmp_path / "a.svg")])
     first = (tmp_path / "a.svg").read_bytes()
     (tmp_path / "a.svg").unlink()
     subprocess.run([sys.executable, "a.py"], cwd=tmp_path, check=True)
@@ -539,14 +540,19 @@ def test_a_script_makes_the_same_figure(results, tmp_path):
 def test_a_script_stands_in_no_package_s_way(results, tmp_path, capsys):
     for name in ("vcor", "numpy"):
         with pytest.raises(SystemExit):
-            main([str(results / "sweep.h5"), "--script", "--output", f"{tmp_path}/{name}.svg"])
+            _command.call(
+                "plot",
+                [str(results / "sweep.h5"), "--script", "--output", f"{tmp_path}/{name}.svg"],
+            )
         assert f"a script {name}.py would hide" in capsys.readouterr().err
         assert not (tmp_path / f"{name}.py").exists()
 
 
 def test_a_folder(results, tmp_path):
     folder = tmp_path / "new" / "figures"
-    main([str(results / "cube.h5"), "--output", str(folder), "--format", "png", "--quiet"])
+    _command.call(
+        "plot", [str(results / "cube.h5"), "--output", str(folder), "--format", "png", "--quiet"]
+    )
     assert [path.name for path in folder.iterdir()] == ["cube_map.png"]
 
 
@@ -644,7 +650,7 @@ def test_errors(bad, monkeypatch, capsys, words, code, line):
     monkeypatch.chdir(bad)
     before = sorted(bad.iterdir())
     with pytest.raises(SystemExit) as caught:
-        main(words)
+        _command.call("plot", words)
     out, err = capsys.readouterr()
     assert (caught.value.code, out) == (code, ""), err
     assert re.fullmatch(rf"vcor: error: .*{line}.*\n", err), err
@@ -685,10 +691,10 @@ def test_names_are_names(results, tmp_path, monkeypatch):
     drawn = {}
     for name in NAMES:
         shutil.copy(results / "sweep.h5", f"{name}.h5")
-        main(["--quiet", "--output", f"{name}/", "--", f"./{name}.h5"])
+        _command.call("plot", ["--quiet", "--output", f"{name}/", "--", f"./{name}.h5"])
         assert (tmp_path / name / f"{name}_sweep.svg").exists()
         words = ["--quiet", "--script", f"--output=out/{name}.svg"]
-        main([*words, "--", f"{name}.h5", "points ' \".csv"])
+        _command.call("plot", [*words, "--", f"{name}.h5", "points ' \".csv"])
         drawn[name] = Path("out", f"{name}.svg").read_bytes()
         Path("out", f"{name}.svg").unlink()
     # one interpreter for all scripts, as most of the time goes into its imports
@@ -709,7 +715,9 @@ def test_permissions(results, tmp_path, mask, mode):
     try:
         for name in ("a", "b"):
             target = f"{tmp_path}/{name}.svg"
-            main([str(results / "sweep.h5"), "--output", target, "--script", "--quiet"])
+            _command.call(
+                "plot", [str(results / "sweep.h5"), "--output", target, "--script", "--quiet"]
+            )
     finally:
         os.umask(before)
     assert (tmp_path / "victim").read_text() == "precious"
@@ -723,9 +731,9 @@ def test_a_name_that_begins_a_pipe(results, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     shutil.copy(results / "sweep.h5", "|touch x.h5")
     with pytest.raises(SystemExit) as caught:
-        main(["|touch x.h5"])
+        _command.call("plot", ["|touch x.h5"])
     assert caught.value.code == 4 and "pipe" in capsys.readouterr().err
-    main(["|touch x.h5", "--output", "figure.svg", "--quiet"])
+    _command.call("plot", ["|touch x.h5", "--output", "figure.svg", "--quiet"])
     assert Path("figure.svg").exists()
 
 
@@ -734,7 +742,7 @@ def test_results_are_not_replaced(results, tmp_path, monkeypatch, capsys):
     (tmp_path / "points.svg").write_text("velocity,cor\n5,0.4\n")
     words = [str(results / "sweep.h5"), "points.svg", "--output", "./points.svg"]
     with pytest.raises(SystemExit) as caught:
-        main(words)
+        _command.call("plot", words)
     assert caught.value.code == 2 and "would replace" in capsys.readouterr().err
 
 
@@ -750,7 +758,7 @@ def test_the_package_that_is_missing(monkeypatch, capsys):
 
 def test_help(capsys):
     with pytest.raises(SystemExit) as caught:
-        main(["--help"])
+        _command.call("plot", ["--help"])
     page = capsys.readouterr().out
     assert caught.value.code == 0 and page.startswith("usage: vcor plot ")
     for word in ("--kind", "--log", "--range", "--levels", "--no-hatch", "--script", *KINDS):

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import vcor
-from vcor import plot, uncertainty_command
+from vcor import _command, plot, uncertainty_command
 from vcor.uncertainty import Spread
 
 EXAMPLES = ROOT / "examples"
@@ -324,7 +324,7 @@ def test_the_same_seed_gives_the_same_numbers(sls):
 def test_command(tmp_path, capsys):
     words = [PAPER / "sls.nml", "--vary", "rubber.beta=5%", "--vary", "impact.velocity=9:11"]
     words += ["--samples", "64", "--output", tmp_path]
-    uncertainty_command.main([str(word) for word in words])
+    _command.call("uncertainty", [str(word) for word in words])
     said = capsys.readouterr().out
     assert "numerical   material      model" in said
     written = json.loads((tmp_path / "sls_uncertainty.json").read_text())
@@ -345,8 +345,8 @@ def test_command(tmp_path, capsys):
 )
 def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
     with pytest.raises(SystemExit) as caught:
-        uncertainty_command.main(
-            [str(PAPER / "sls.nml"), "--vary", word, "--output", str(tmp_path)]
+        _command.call(
+            "uncertainty", [str(PAPER / "sls.nml"), "--vary", word, "--output", str(tmp_path)]
         )
     assert caught.value.code in (2, 3)
     error = capsys.readouterr().err
@@ -367,7 +367,7 @@ def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
 def test_bad_options_are_refused_in_one_line(words, said, capsys, tmp_path):
     words = [str(PAPER / "sls.nml"), "--vary", "rubber.beta=5%", *words, "--output", str(tmp_path)]
     with pytest.raises(SystemExit) as caught:
-        uncertainty_command.main(words)
+        _command.call("uncertainty", words)
     assert caught.value.code == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1
@@ -376,7 +376,7 @@ def test_bad_options_are_refused_in_one_line(words, said, capsys, tmp_path):
 def test_impacts_without_a_result_are_a_line(capsys, tmp_path):
     words = [PAPER / "sls.nml", "--vary", "sphere.radius=0.5", "--samples", "32", "--output"]
     with pytest.raises(SystemExit):
-        uncertainty_command.main([str(word) for word in [*words, tmp_path]])
+        _command.call("uncertainty", [str(word) for word in [*words, tmp_path]])
     lines = capsys.readouterr().err.splitlines()
     assert [line.split()[1] for line in lines] == ["note:", "error:"]
 
@@ -488,14 +488,13 @@ def test_bands_are_those_of_each_impact(swept):
 
 def test_a_long_computation_is_announced(swept, tmp_path, capsys, monkeypatch):
     """How many impacts it solves and about how long that takes, before it begins."""
-    from vcor import uncertainty_command
 
     swept.save(tmp_path / "a.nml")
     words = [str(tmp_path / "a.nml"), "--vary", "rubber.beta=5%", "--samples", "64", "--quantity",
              "cor", "--output", str(tmp_path)]  # fmt: skip
     for limit, said in ((1e9, False), (0.0, True)):
         monkeypatch.setattr(uncertainty_command, "LONG", limit)
-        uncertainty_command.main(words)
+        _command.call("uncertainty", words)
         assert ("192 impacts take some" in capsys.readouterr().err) is said
 
 
@@ -530,7 +529,7 @@ def test_command_over_a_sweep(swept, tmp_path, capsys, monkeypatch):
     swept.save("rubber.nml")
     words = ["rubber.nml", "--vary", "rubber.beta=5%", "--samples", "64", "--quantity",
              "contact_time,cor", "--output", "found"]  # fmt: skip
-    uncertainty_command.main(words)
+    _command.call("uncertainty", words)
     said = capsys.readouterr().out
     assert "contact_time: the largest error is that of the model at 3 of 3 values" in said
     written = vcor.open("found/rubber_uncertainty.h5")
@@ -546,7 +545,9 @@ def test_command_over_a_sweep(swept, tmp_path, capsys, monkeypatch):
         assert list(known.values()) == [float(written[name][i]) for name in ends]
     assert vcor.Case(written.attrs["case"]).run().cor.equals(swept.run().cor)
     # what vcor plot draws of it: two shares, and the exact mechanics
-    plot.main(["found/rubber_uncertainty.h5", "--quantity", "contact_time", "--output", "b.svg"])
+    _command.call(
+        "plot", ["found/rubber_uncertainty.h5", "--quantity", "contact_time", "--output", "b.svg"]
+    )
     figure = plot.figure("found/rubber_uncertainty.h5", quantities=["contact_time"])
     outer, inner = (one.get_paths()[0].vertices[:, 1] for one in figure.axes[0].collections)
     assert outer.max() == pytest.approx(1e3 * written["contact_time_p97.5"].values.max())

@@ -23,6 +23,9 @@ FORMATS = ("svg", "pdf", "png")
 class Parser(argparse.ArgumentParser):
     """Options of a command; a mistake is a `UsageError`."""
 
+    #: Option whose value may begin with a dash, as -5C
+    signed = ""
+
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
         self.add_argument("--version", action="version", version=f"vcor {__version__}")
@@ -47,7 +50,11 @@ class Parser(argparse.ArgumentParser):
 
         From here on messages name them in place of the parameters of Python.
         """
-        options = self.parse_args(arguments)
+        words = list(sys.argv[1:] if arguments is None else arguments)
+        if self.signed in words[:-1]:
+            i = words.index(self.signed)
+            words[i : i + 2] = [f"{self.signed}={words[i + 1]}"]
+        options = self.parse_args(words)
         OPTIONS.set(
             {one.dest: one.option_strings[0] for one in self._actions if one.option_strings}
         )
@@ -61,16 +68,6 @@ class Parser(argparse.ArgumentParser):
         if (flaw := name_flaw(getattr(options, "output", None) or "")) != "":
             raise UsageError(f"--output: the name {flaw}, expected another name")
         return options
-
-
-def joined(words: Sequence[str], *names: str) -> list[str]:
-    """Words in which values that may begin with a dash, as -5C, are joined to their options."""
-    found = list(words)
-    for name in names:
-        if name in found[:-1]:
-            i = found.index(name)
-            found[i : i + 2] = [f"{name}={found[i + 1]}"]
-    return found
 
 
 def _note(message: Warning | str, category: type[Warning], *_: Any) -> None:
@@ -110,8 +107,15 @@ def _print(text: str) -> None:
         raise FileError(f"cannot write the standard output: {error.strerror}") from None
 
 
+def call(name: str, arguments: Sequence[str] | None = None) -> None:
+    """Run a command; an error leaves with the code of the program."""
+    with one_line():
+        module = importlib.import_module(f"vcor.{MODULES[name]}")
+        module._work(module._parser().options(arguments))
+
+
 def _run(name: str) -> None:
-    """Run the command of a module, if what it needs is there."""
+    """Run a command of the shell, if what it needs is there."""
     # a reader that has enough ends the command in silence, as it ends the program
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     with one_line():
@@ -121,7 +125,7 @@ def _run(name: str) -> None:
         printed = io.StringIO()
         try:
             with contextlib.redirect_stdout(printed):
-                importlib.import_module(f"vcor.{MODULES[name]}").main()
+                call(name)
         except OSError as error:
             what = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
             raise FileError(f"{what}{error.strerror or error}") from None
@@ -134,7 +138,7 @@ def _run(name: str) -> None:
             _print(printed.getvalue())
 
 
-#: Module of each command, with its `main` and `_parser`
+#: Module of each command, with its `_parser` and `_work`
 MODULES = {
     "card": "exchange.cards",
     "export": "exchange.export",

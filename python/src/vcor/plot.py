@@ -925,12 +925,10 @@ def _width(word: str) -> float:
         ) from None
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor plot`; exits with the codes of the program."""
-    with _command.one_line(), warnings.catch_warnings():
+def _work(options: argparse.Namespace) -> None:
+    with warnings.catch_warnings():
         # such as letters that the font does not have
         warnings.simplefilter("ignore")
-        options = _parser().options(arguments)
         settings = _settings(options)
         made = figure(options.files, **settings)
         first = next(name for name in options.files if is_result(name))
@@ -968,7 +966,3 @@ def _script(files: Sequence[str], settings: dict[str, Any], target: Path) -> str
         f"import vcor.plot\n\nfigure = vcor.plot.figure(\n    {names!r},\n{lines})\n"
         f"vcor.plot.save(figure, {target.name!r})\n"
     )
-
-
-if __name__ == "__main__":
-    main()

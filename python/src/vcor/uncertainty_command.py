@@ -8,7 +8,6 @@ import math
 import os
 import time
 import warnings
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,12 +51,6 @@ def _parser() -> _command.Parser:
     add("--seed", metavar="N", type=int, default=1, help="seed of the samples; default: 1")
     add("--threads", metavar="N", type=int, help="threads; default: one per core")
     return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor uncertainty`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
 
 
 def _announce(case: Case, samples: int, threads: int | None) -> None:

@@ -7,7 +7,6 @@ import math
 import os
 import re
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -307,12 +306,6 @@ def _parser() -> _command.Parser:
     what = "reading: modulus at time zero in the units of the card, if the card has none"
     add("--modulus", type=float, metavar="E", help=what)
     return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor card`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
 
 
 def _work(options: argparse.Namespace) -> None:

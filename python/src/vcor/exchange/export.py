@@ -96,12 +96,6 @@ def _parser() -> _command.Parser:
     return parser
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor export`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
-
-
 def _work(options: argparse.Namespace) -> None:
     try:
         low, high, count = options.velocities.split(":")

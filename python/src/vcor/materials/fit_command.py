@@ -322,12 +322,6 @@ def _parser() -> _command.Parser:
     return parser
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor fit`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
-
-
 def _whole(text: str) -> int:
     if not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"found '{text}', expected a whole number from 1")

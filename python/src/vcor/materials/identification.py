@@ -34,7 +34,6 @@ from .limits import BESIDE, OPEN, Better, Fit, Interval
 from .misfit import are_alike
 from .observations import (
     Block,
-    File,
     Impacts,
     Record,
     Source,
@@ -243,19 +242,19 @@ def identify(
     # a DataFrame is not a Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
     choice = Choice(columns, units, sum(not isinstance(one, dict) for one in sources))
-    sources = [one if isinstance(one, dict) else File(one, choice) for one in sources]
     if not sources:
         raise UsageError("expected at least one file or table of data")
     free = [address for address in free if address not in fix]
     if model:
-        case, free = _with_model(case, free, model, fix, sources)
+        read = [observations(case, source, free, choice) for source in sources]
+        case, free = _with_model(case, free, model, fix, read)
     if not free:
         also = f" that {option('fix')} does not give, found {', '.join(fix)}" if fix else ""
         raise UsageError(f"expected at least one free parameter{also}")
     whole(seed, option("seed"), 0, MOST_SEED)
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
-    blocks = [observations(case, source, free) for source in sources]
+    blocks = [observations(case, source, free, choice) for source in sources]
     choice.refuse_unseen("the files have")
     # the accuracy that the fit needs is not one of the case
     given = case.copy()
@@ -445,7 +444,7 @@ def _tangents(problem: Problem, x: Floats, covariance: Floats) -> Iterator[Tange
 
 
 def _with_model(
-    case: Case, free: Sequence[str], model: str, fix: Mapping[str, float], sources: Sequence[Source]
+    case: Case, free: Sequence[str], model: str, fix: Mapping[str, float], blocks: Sequence[Block]
 ) -> tuple[Case, list[str]]:
     """The case with another model for the material of the free parameters, all of it free."""
     names = materials_of(free)
@@ -457,7 +456,7 @@ def _with_model(
         raise UsageError(
             f"{option('model', model)}: expected the name of a model, or such as prony:2"
         )
-    first, last = window([observations(case, one, free) for one in sources], case, name)
+    first, last = window(blocks, case, name)
     times = np.geomspace(first, last, 60)
     reference = case.copy()
     if case[f"{name}.shift"] is not None:
@@ -528,12 +527,6 @@ def _parser() -> _command.Parser:
     add("--seed", metavar="N", type=int, default=1, help="seed of the starts; default: 1")
     add_data_options(parser)
     return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor identify`; exits with the codes of the program."""
-    with _command.one_line():
-        _work(_parser().options(arguments))
 
 
 def _work(options: argparse.Namespace) -> None:

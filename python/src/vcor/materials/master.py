@@ -11,7 +11,6 @@ import dataclasses
 import math
 import os
 import re
-import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -343,6 +342,7 @@ def _parser() -> _command.Parser:
         description="Master curve and shift factors of moduli at several temperatures. Writes "
         "NAME_master.csv for vcor fit, NAME_master_shift.csv for shift_file, JSON and a figure.",
     )
+    parser.signed = "--reference"
     parser.add_outputs()
     add = parser.add_argument
     what = "file with a column T [C] or T [K], or FILE@-20C of one temperature"
@@ -359,13 +359,6 @@ def _parser() -> _command.Parser:
     add("--vertical-shift", choices=("yes", "no"), help=what)
     add_data_options(parser)
     return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor master`; exits with the codes of the program."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    with _command.one_line():
-        _work(_parser().options(_command.joined(words, "--reference")))
 
 
 def _work(options: argparse.Namespace) -> None:

@@ -88,18 +88,19 @@ class Head:
 
 def plain(text: str) -> str:
     """A name without what spellings differ in: capitals, accents, marks between words."""
-    text = unicodedata.normalize("NFKC", text)
-    text = re.sub("[’′`´‘]", "'", text).replace("″", "''").replace("”", "''").replace('"', "''")
-    text = unicodedata.normalize("NFKD", text.casefold())
+    text = unicodedata.normalize("NFKD", _primed(text).casefold())
     text = "".join(c for c in text if not "\u0300" <= c <= "\u036f")
     text = unicodedata.normalize("NFC", text)
     return re.sub(r"[\s_\-\u2010-\u2015]+", " ", text).strip(" .:")
 
 
-def _symbol(text: str) -> str:
+def _primed(text: str) -> str:
     text = unicodedata.normalize("NFKC", text)
-    text = re.sub("[’′`´‘]", "'", text).replace("″", "''").replace("”", "''").replace('"', "''")
-    return re.sub(r"\s+", "", text)
+    return re.sub("[’′`´‘]", "'", re.sub('[″”"]', "''", text))
+
+
+def _symbol(text: str) -> str:
+    return re.sub(r"\s+", "", _primed(text))
 
 
 @functools.cache

@@ -7,7 +7,6 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,20 +21,11 @@ from ..case import Case, arrays, number, radius_of
 from .data import SAME_TEMPERATURE, curves, read_data, tensile
 from .tables import Choice
 
-
-@dataclass(frozen=True)
-class File:
-    """A file of measured data, with what its user says of its columns and units."""
-
-    path: str | os.PathLike[str]
-    choice: Choice | None = None
-
-
 #: By column: the unit of its last digit, and its most significant digits; of arrays none is known
 Written = Mapping[str, tuple[float, int]]
 NO_DIGITS: Written = {}
 
-Source = str | os.PathLike[str] | File | Mapping[str, ArrayLike]
+Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
 
 #: Standard gravity [m/s2]
 GRAVITY = 9.80665
@@ -509,7 +499,9 @@ def _as_velocities(
     return columns, digits
 
 
-def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
+def observations(
+    case: Case, source: Source, free: Sequence[str], choice: Choice | None = None
+) -> Block:
     """Data of a file or of columns, by what they are."""
     materials, taken, written = materials_of(free), "", NO_DIGITS
     if isinstance(source, Mapping):
@@ -518,9 +510,8 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
     else:
-        file = source if isinstance(source, File) else File(source)
-        name = os.fspath(file.path)
-        columns, taken, written = read_columns(file.path, case, materials, file.choice)
+        name = os.fspath(source)
+        columns, taken, written = read_columns(source, case, materials, choice)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():

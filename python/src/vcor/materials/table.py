@@ -6,7 +6,6 @@ import argparse
 import math
 import os
 import sys
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -91,6 +90,7 @@ def _parser() -> _command.Parser:
         description="Relaxation moduli or shift factors of a file of measured data as the plain "
         "table that model = 'table' and shift_file read; it is printed.",
     )
+    parser.signed = "--temperature"
     parser.add_argument("data", metavar="DATA", help="file of measured data; - is the input")
     add_data_options(parser)
     what = "by which shear moduli become tensile ones"
@@ -99,13 +99,6 @@ def _parser() -> _command.Parser:
     parser.add_argument("--temperature", metavar="T", help=what)
     parser.add_argument("--quiet", action="store_true", help="do not say what was taken")
     return parser
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Command `vcor table`; exits with the codes of the program."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    with _command.one_line():
-        _work(_parser().options(_command.joined(words, "--temperature")))
 
 
 def _work(options: argparse.Namespace) -> None:
