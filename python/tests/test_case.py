@@ -3,6 +3,7 @@
 import concurrent.futures
 import contextlib
 import csv
+import functools
 import multiprocessing
 import os
 import pickle
@@ -443,22 +444,27 @@ def test_numbers_in_another_unit(sls):
 
     assert said(sls.run) == []
     velocity = "impact.velocity = 1000.0 m/s is more than 300.0: is it in mm/s?"
-    for values in ([1.0, 1000.0], [1000.0, np.nan], [[1000.0]]):
-        points = {"impact.velocity": np.ravel(values)}
-        assert said(lambda points=points: sls.points(points, ["cor"])) == [velocity]
-        assert said(lambda points=points: sls.sweep(points, ["cor"])) == [velocity]
+    for values in ([1.0, 1000.0], [1000.0, np.nan], [1000.0]):
+        for use in ("points", "sweep"):
+            solve = functools.partial(
+                getattr(vcor.Case(str(sls)), use), {"impact.velocity": values}
+            )
+            assert said(solve) == [velocity]
     assert said(lambda: sls.points({"impact.velocity": []})) == []
-    slow = sls.copy()
-    assert said(lambda: slow.solve({"impact.velocity": 1000.0})) == [velocity]
-    # a loop is looked at once
-    assert said(lambda: slow.solve({"impact.velocity": 1000.0})) == []
-    heavy = vcor.Case(str(sls).replace("radius = 0.01", "radius = 10.0"))
+    text = str(sls).replace("radius = 0.01", "radius = 10.0")
     line = "case.nml:10: sphere.radius = 10.0 m is more than 1.0: is it in mm?"
-    for use in (heavy.run, heavy.solve, heavy.history, heavy.verify):
-        assert said(use) == [line]
+    for use in ("run", "solve", "history", "verify"):
+        heavy = vcor.Case(text)
+        assert said(getattr(heavy, use)) == [line]
+    # once for a case and its copies
+    assert said(heavy.run) == said(heavy.copy().run) == []
     heavy["rubber.density"] = 1.2
-    density = "rubber.density = 1.2 kg/m3 is less than 10.0: is it in g/cm3?"
-    assert said(heavy.solve) == [line, density]
+    assert said(heavy.solve) == ["rubber.density = 1.2 kg/m3 is less than 10.0: is it in g/cm3?"]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        with contextlib.suppress(vcor.NumericalError):
+            vcor.propagate(vcor.Case(text), {"rubber.beta": "5%"}, samples=32)
+    assert [str(one.message) for one in caught if one.category is vcor.UnitWarning] == [line]
 
 
 def test_points_without_a_result(sls):

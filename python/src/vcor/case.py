@@ -146,8 +146,9 @@ class Case:
         self._added: list[tuple[str, str]] = []
         self._settings: dict[str, str] = {}
         self._numbers: dict[str, float] = {}
-        #: Addresses of the points whose units `solve` has looked at
+        #: Addresses of the points whose units `solve` has looked at, and what was said of units
         self._looked_at: tuple[str, ...] | None = None
+        self._told: set[str] = set()
 
     def add(self, materials: Case) -> None:
         """Complete the case by &material groups, whose data files stay where they are."""
@@ -194,7 +195,7 @@ class Case:
 
     def copy(self) -> Case:
         """Another case of the same values."""
-        return _restored(self._text, self._path, self.name, self._settings, self._added)
+        return _changed(self, self._text, self._settings, self._added)
 
     def text(self, *, complete: bool = False) -> str:
         """The case as namelists, with `complete` also every default; the case is checked."""
@@ -484,7 +485,10 @@ class Case:
             call("vcor_warnings", self._pointer, len(points), given, 2, np.array(ends),
                  byref(found))  # fmt: skip
         for line in (_library.take_text(found) or "").splitlines():
-            warnings.warn(line, UnitWarning, stacklevel=3)
+            # what is wrong with a value, wherever it stands, once for a case and its copies
+            if (flaw := re.sub(r"^.*: (?=\S+ = )", "", line)) not in self._told:
+                self._told.add(flaw)
+                warnings.warn(line, UnitWarning, stacklevel=3)
 
     def _settled(self, addresses: Sequence[str], values: Floats) -> Case:
         """A copy with values, of which all is solved on the mesh that suits it, for differences."""
@@ -635,6 +639,15 @@ def _restored(
     return case
 
 
+def _changed(
+    case: Case, text: str, settings: Mapping[str, str] | None = None, added: Any = ()
+) -> Case:
+    """A case with another text in the place of one, which knows what was said of its units."""
+    made = _restored(text, case._path, case.name, settings or {}, added)
+    made._told = case._told
+    return made
+
+
 def _from_anywhere(text: str, folder: Path) -> str:
     """A case as it is printed, a key a line, with the data files of a folder by absolute paths."""
     return re.sub(
@@ -666,20 +679,22 @@ def _dataset(
 
 def as_case(case: Case | str | os.PathLike[str]) -> Case:
     """A case, or that of a file."""
-    return case if isinstance(case, Case) else read(case)
+    case = case if isinstance(case, Case) else read(case)
+    case._warn({})
+    return case
 
 
 def with_material(case: Case, name: str, change: Callable[[re.Match[str]], str]) -> Case:
     """A copy of a case with a changed &material group in the place of that of this name."""
     title = re.escape(_written(case[f"{name}.name"], name))
     text = re.sub(rf"(?ms)^&material\n   name = {title}\n.*?^/$", change, case.text())
-    return _restored(text, case._path, case.name, {})
+    return _changed(case, text)
 
 
 def with_values(case: Case, values: Mapping[str, float]) -> Case:
     """A copy of a case without its &sweep groups, with values in their place."""
     text = re.sub(r"(?ms)^&sweep\n.*?^/$", "", case.text())
-    made = _restored(text, case._path, case.name, {})
+    made = _changed(case, text)
     for address, value in values.items():
         made[address] = value
     return made

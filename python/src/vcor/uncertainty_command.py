@@ -15,7 +15,7 @@ from . import _command
 from ._library import Error
 from ._outputs import finish
 from ._text import option
-from .case import Case, read, with_values
+from .case import Case, as_case, read, with_values
 from .results import as_csv, as_hdf5
 from .uncertainty import USUAL, propagate
 from .uncertainty_sweep import bands
@@ -55,7 +55,7 @@ def _parser() -> _command.Parser:
 
 def _announce(case: Case, samples: int, threads: int | None) -> None:
     """Say how long it may take, if that is long."""
-    axes, one = case._axes(), case
+    axes, one = as_case(case)._axes(), case
     for address, values in axes.items():
         one = with_values(one, {address: float(values[0])})
     begin = time.perf_counter()

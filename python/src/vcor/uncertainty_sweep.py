@@ -92,7 +92,8 @@ def bands(
     Bands
         Quantities and their percentiles over the swept parameter.
     """
-    case, axes = as_case(case), as_case(case)._axes()
+    case = as_case(case)
+    axes = case._axes()
     if quantities is USUAL:
         quantities = _every(case)
     if len(axes) != 1:
