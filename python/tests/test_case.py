@@ -22,6 +22,7 @@ import xarray as xr
 from conftest import PAPER, ROOT, SWEEPS
 
 import vcor
+from vcor.case import as_case
 
 SINGLE = ["sls", "butyl_cerf", "butyl_power_law", "elastic", "butyl_prony_ghost", "sls_printed"]
 GROUPS = {
@@ -456,6 +457,8 @@ def test_numbers_in_another_unit(sls):
     for use in ("run", "solve", "history", "verify"):
         heavy = vcor.Case(text)
         assert said(getattr(heavy, use)) == [line]
+    swept = vcor.Case(f"{text}&sweep parameter = 'impact.velocity', values = 1, 2 /")
+    assert said(lambda: as_case(swept)) == [line] and said(swept.run) == []
     # once for a case and its copies
     assert said(heavy.run) == said(heavy.copy().run) == []
     heavy["rubber.density"] = 1.2

@@ -475,15 +475,15 @@ class Case:
 
     def _warn(self, points: Mapping[str, ArrayLike]) -> None:
         """Warn of numbers of the case and of points that look like those in another unit."""
-        ends = [
-            [end.reduce(np.ravel(one), initial=np.nan) for one in points.values()]
-            for end in (np.fmin, np.fmax)
-        ]
-        given, found = _library.texts(tuple(points)), c_void_p()
+        found = c_void_p()
         # what is wrong is refused by the solution
         with contextlib.suppress(Error):
-            call("vcor_warnings", self._pointer, len(points), given, 2, np.array(ends),
-                 byref(found))  # fmt: skip
+            points = points or self._axes()
+            given, columns = _library.texts(tuple(points)), map(np.ravel, points.values())
+            ends = [[end.reduce(one, initial=np.nan) for end in (np.fmin, np.fmax)]
+                    for one in columns]  # fmt: skip
+            call("vcor_warnings", self._pointer, len(points), given, 2,
+                 np.ascontiguousarray(np.reshape(ends, (-1, 2)).T), byref(found))  # fmt: skip
         for line in (_library.take_text(found) or "").splitlines():
             # what is wrong with a value, wherever it stands, once for a case and its copies
             if (flaw := re.sub(r"^.*: (?=\S+ = )", "", line)) not in self._told:
