@@ -9,51 +9,25 @@ module vcor_tuning
 
    ! Sums of exponentials for continuous spectra
 
-   !> Rate over that of the window below which exp(-l t) is treated as 1 - l t + ..
-   real(wp), parameter :: spectrum_slow = 0.5_wp
-   !> Distance in ln(l) from the peak beyond which the spectrum is a power of the rate, on the slow
-   !> and on the fast side; fast rates matter less
-   real(wp), parameter :: spectrum_below = 4.0_wp
-   real(wp), parameter :: spectrum_above = 1.0_wp
-   !> Lowest accuracy with which a sum is built
-   real(wp), parameter :: spectrum_loosest = 1.0e-2_wp
-   !> Share of the first node in the constant and of the last one in the dashpot, over the accuracy,
-   !> above which what is beyond is added
-   real(wp), parameter :: spectrum_tail = 1.0e-3_wp
-   !> Refinements for spectra with features at unknown rates, and how much farther out in ln(l) the
-   !> slow and the fast end begin with each
-   integer, parameter :: spectrum_runs = 3
-   real(wp), parameter :: spectrum_farther_below = 3.0_wp
-   real(wp), parameter :: spectrum_farther_above = 5.0_wp
-   !> Share of the relative error of the integral that counts for the impact: fast parts of a
-   !> modulus act through their integral
-   real(wp), parameter :: spectrum_integral = 0.3_wp
+   !> Power of the accuracy by which the rule for a spectrum with features at unknown rates is made
+   !> finer: with 1.5 and 2 the sum has 1.2 and 1.5 times as many terms as it needs
+   real(wp), parameter :: spectrum_finer = 1.3_wp
+   !> Number of terms beyond which it is made no finer for the memory of a plate: they take 20 ms
+   integer, parameter :: spectrum_most = 20000
 
    ! Sums of exponentials with moduli of either sign
 
-   !> Slowest and fastest rate of the regular grid, over that of the window, and the logarithm of
-   !> the ratio of two neighbours
-   real(wp), parameter :: pair_slowest = 0.2_wp
-   real(wp), parameter :: pair_fast = 1.0e7_wp
+   !> Logarithm of the ratio of two neighbouring rates: with 0.2 errors of 290 random pairs grow
+   !> tenfold
    real(wp), parameter :: pair_spacing = 0.15_wp
-   !> Beyond it a grid of half as many rates up to this one, for moduli such as t^-a: lumping all
-   !> rates above l leaves an error of l^(a - 2)
-   real(wp), parameter :: pair_fastest = 1.0e10_wp
-   !> Samples per rate; the first sample over the inverse of the fastest rate
-   integer, parameter :: pair_samples = 3
-   real(wp), parameter :: pair_earliest = 0.3_wp
-   !> Part of the window from which errors count in full; before, by this power of the time. With a
-   !> higher power the sum may become negative there, with a lower one t^-a takes digits from the
-   !> rest
-   real(wp), parameter :: pair_full_weight = 0.03_wp
-   real(wp), parameter :: pair_power = 1.5_wp
-   !> Factor from the error of the integral to that of an impact, measured
-   real(wp), parameter :: pair_integral = 3.0_wp
-   !> Error per sum of the moduli, estimated and for choosing the number of rates: moduli of
-   !> opposite sign lose digits, and so do the eigenvectors of the panels; 4e-15 was measured, more
-   !> for receding contact
-   real(wp), parameter :: pair_digits = 2.0e-14_wp
-   real(wp), parameter :: pair_most_digits = 1.0e-12_wp
+   !> Rate over that of the window above which a few cover many decades: 1e7 makes 13 % more terms,
+   !> with 1e5 errors of those pairs grow tenfold
+   real(wp), parameter :: pair_fast = 1.0e6_wp
+   !> Part of a column that does not depend on those before it, over the first one, below which it
+   !> is left out: with 1e-11 the sum for two standard linear solids is off by 8e-10 (2e-11); with
+   !> 1e-13 large moduli lose digits, and six of 72 impacts with pairs of rough tables do not come
+   !> to their end (two)
+   real(wp), parameter :: pair_independent = 1.0e-12_wp
 
    ! Sums of exponentials for data
 
@@ -64,28 +38,22 @@ module vcor_tuning
    real(wp), parameter :: table_fastest = 4.0_wp
    !> Rates per decade of the first grid: for t^-0.5 the misfit is 5e-4 with 2, 2e-5 with 3 and 4
    real(wp), parameter :: table_rates = 3.0_wp
-   !> Refinements of the grid: the rates are then known to 0.3 %, and merging two of them costs 1e-6
-   integer, parameter :: table_refinements = 8
    !> Misfit that is good enough: the default accuracy of the COR
    real(wp), parameter :: table_misfit = 1.0e-6_wp
-   !> Factor by which a refinement must reduce the residual times the square of the number of terms:
-   !> for a continuous spectrum, doubling the terms keeps halving the residual
-   real(wp), parameter :: table_gain = 0.7_wp
-   !> Largest growth of the misfit by all merging
-   real(wp), parameter :: table_loss = 1.25_wp
-   !> Samples of the data per decade; the first grid has three terms per decade
-   real(wp), parameter :: table_samples = 20.0_wp
 
-   ! Sums of exponentials in an impact
+   ! All sums of exponentials
 
+   !> Samples per rate to which moduli are fitted: with 3 a power law as a table takes more terms,
+   !> and errors of three of 72 impacts with pairs of tables are twice to four times what is stated
+   integer, parameter :: sum_samples = 4
+   !> Number of exponentials beyond which one with moduli of either sign is fitted: each takes 1 us
+   !> per impact; fitting a hundred takes 6 ms if the factors are not yet made
+   integer, parameter :: sum_most = 400
    !> Share of the accuracy to which the kernel of the contact and the memory of a plate are
-   !> approximated
+   !> approximated: ten times it saves 13 % of the terms, but no time, as more sums are made again
    real(wp), parameter :: sum_share = 0.01_wp
-   !> Error of the coefficients of restitution per relative error of the kernel
-   real(wp), parameter :: sum_error = 0.3_wp
-   !> Window of a sum over the expected contact time, and its growth if the contact lasts longer
+   !> Window of a sum over the expected contact time; contacts that last longer are marched again
    real(wp), parameter :: sum_window = 2.0_wp
-   real(wp), parameter :: sum_growth = 20.0_wp
 
    ! Internal variables
 

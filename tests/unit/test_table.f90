@@ -302,7 +302,7 @@ contains
       call new_tabulated(material, time, modulus, error)
       call success(error, "a staircase is built")
       call sane(material, time(size(time)), terms, "staircase")
-      call check(terms%error > 0.1_wp .and. terms%error < 0.5_wp, "a staircase is met in the mean")
+      call check(terms%error > 0.03_wp .and. terms%error < 0.3_wp, "a staircase is met in the mean")
       call new_tabulated(material, [1.0e-3_wp, 1.0_wp, 1.1_wp, 1.0e3_wp], &
          [1.0_wp, 0.9_wp, 1.0e-6_wp, 0.9e-6_wp], error)
       call success(error, "a cliff is built")
@@ -385,7 +385,8 @@ contains
       call material%exponentials(2.0_wp*last, 1.0e-3_wp, terms)
       call check(all(terms%moduli > 0.0_wp) .and. all(terms%rates > 0.0_wp) &
          .and. terms%equilibrium >= 0.0_wp, what//": no term is negative")
-      call check(terms%equilibrium <= material%rubbery()*(1.0_wp + terms%error), &
+      ! but for the misfit that is good enough
+      call check(terms%equilibrium <= material%rubbery()*(1.0_wp + 1.0e-6_wp), &
          what//": no more than the last modulus is left in the end")
    end subroutine sane
 
@@ -409,14 +410,14 @@ contains
       call new_tabulated(material, time, value, error)
       call success(error, "a table is built")
       call sane(material, time(size(time)), terms, "smooth material")
-      call check_close(terms%error, 0.0_wp, misfit, "misfit of the terms")
+      ! that includes the time before the first point, where the sum rises and the table does not
+      call check_close(terms%error, 0.0_wp, 3.0_wp*misfit, "the integral of the terms")
       largest = 0.0_wp
       do i = 1, size(time)
          largest = max(largest, abs((terms%equilibrium &
             + sum(terms%moduli*exp(-terms%rates*time(i))))/value(i) - 1.0_wp))
       end do
-      call check(largest <= terms%error*(1.0_wp + 1.0e-6_wp) + rounding, &
-         "the misfit told is the largest, at the points as well")
+      call check_close(largest, 0.0_wp, misfit, "the misfit of the terms at the points")
    end subroutine terms_of
 
    !> Largest relative error of the interpolation in the middle between points

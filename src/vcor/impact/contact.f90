@@ -360,9 +360,8 @@ contains
       !> The sum; `terms%error` is its estimated relative error
       type(exponential_sum_t), intent(out) :: terms
 
-      ! ratio of error and requested accuracy from which a fit is tried, and the part of the window
-      ! within which its fastest term has decayed
-      real(wp), parameter :: far = 30.0_wp, early = 0.01_wp
+      ! part of the window within which the fastest term of a fit has decayed
+      real(wp), parameter :: early = 0.01_wp
       type(exponential_sum_t) :: one
       logical :: is_found
       integer :: n
@@ -373,8 +372,8 @@ contains
       else
          call self%first%exponentials(window, accuracy, terms)
          call terms%scale(self%first_factor)
-         ! the spectrum has peaks that the rule does not resolve
-         if (self%series .and. .not. self%first%discrete .and. terms%error > far*accuracy) then
+         ! the spectrum may have peaks that the rule does not resolve
+         if (self%series .and. .not. self%first%discrete .and. terms%error > accuracy) then
             call fit_values(one)
             ! the fastest term stands for all relaxation before the first sample; the integral gives
             ! it

@@ -13,9 +13,10 @@ module vcor_impact_memory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
    use vcor_kinds, only : pi, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_spectrum, only : rule_for_spectrum, transform_t
+   use vcor_material_spectrum, only : sum_of_resolved_spectrum, transform_t
    use vcor_material_type, only : material_t
    use vcor_numeric_elliptic, only : branch_rule
+   use vcor_tuning, only : spectrum_most
    implicit none
    private
 
@@ -129,37 +130,28 @@ contains
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
 
-      ! most refinements: of accuracy for the rule over gaps, of the step for the rule for spectra
-      integer, parameter :: most_for_gaps = 5, most_for_spectra = 18
       ! accuracy of the numerical inversion
       real(wp), parameter :: rounding = 3.0e-12_wp
-      ! the square root narrows the strip in which the spectrum is analytic, and slow rates do not
-      ! follow a power law: the rule for spectra starts with a step divided by `finer`, and its slow
-      ! and fast ends `below` and `above` farther out in ln(l)
-      real(wp), parameter :: finer = 1.25_wp, below = 5.0_wp, above = 1.0_wp
-      ! the same for each refinement
-      real(wp), parameter :: much_finer = 1.3_wp, farther = 2.0_wp
       ! rate that stands for zero, over that of the window
       real(wp), parameter :: slowest = 1.0e-14_wp
-      type(exponential_sum_t) :: now
+      type(exponential_sum_t) :: next
       integer :: refinement
 
-      terms%error = huge(1.0_wp)
-      do refinement = 0, merge(most_for_gaps, most_for_spectra, self%material%discrete)
-         if (self%material%discrete) then
-            call sum_over_gaps(self, self%gaps, window, &
-               max(accuracy, rounding)**(refinement + 1), now)
-         else
-            call rule_for_spectrum(self, window, accuracy, now, &
-               finer=finer*much_finer**refinement, &
-               below=below + farther*real(refinement, wp), &
-               above=above + farther*real(refinement, wp))
-            now%viscosity = now%viscosity + self%viscosity
-         end if
-         now%error = error_of(self, window, now)
-         if (now%error < terms%error) terms = now
-         if (terms%error <= max(accuracy, rounding)) exit
-      end do
+      if (.not. self%material%discrete) then
+         call sum_of_resolved_spectrum(self, window, max(accuracy, rounding), spectrum_most, &
+            terms)
+      else
+         terms%error = huge(1.0_wp)
+         refinement = 0
+         do
+            refinement = refinement + 1
+            call sum_over_gaps(self, self%gaps, window, max(accuracy, rounding)**refinement, next)
+            next%error = error_of(self, window, next)
+            if (.not. next%error < terms%error) exit
+            terms = next
+            if (terms%error <= max(accuracy, rounding)) exit
+         end do
+      end if
       ! the memory of the motion consists of modes only: the constant becomes a mode of a very
       ! slow rate
       if (.not. terms%equilibrium > 0.0_wp) return
@@ -176,24 +168,14 @@ contains
       type(exponential_sum_t), intent(in) :: terms
       real(wp) :: error
 
-      real(wp) :: time(2), expected, found
-      integer :: i, n
+      real(wp) :: time
 
-      time = [1.0_wp, 0.1_wp]*window
-      n = size(time)
-      if (self%material%discrete) then
-         ! the rule over gaps converges geometrically: one time is enough, before all has relaxed
-         n = 1
-         associate (zero => self%gaps%pole(self%gaps%near(1)) + self%gaps%offset(1))
-            if (zero*window > 1.0_wp) time = 1.0_wp/zero
-         end associate
-      end if
-      error = 0.0_wp
-      do i = 1, n
-         expected = self%viscosity + self%integral(time(i))
-         found = terms%integral(time(i))
-         error = max(error, abs(found/expected - 1.0_wp))
-      end do
+      ! the rule over gaps converges geometrically: one time is enough, before all has relaxed
+      time = window
+      associate (zero => self%gaps%pole(self%gaps%near(1)) + self%gaps%offset(1))
+         if (zero*window > 1.0_wp) time = 1.0_wp/zero
+      end associate
+      error = abs(terms%integral(time)/(self%viscosity + self%integral(time)) - 1.0_wp)
    end function error_of
 
    !> Sum for a material that is a sum of exponentials. Q_b(-l) is real, and negative between each

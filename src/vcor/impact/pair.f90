@@ -17,35 +17,29 @@
 !> fixed grid, fine enough for any mixture of exponentials; a coarser grid misses single relaxation
 !> times between its rates.
 !>
-!> In units of the window and of the mean modulus the samples, weights and rates are the same for
+!> In units of the window the samples, weights and rates are the same for
 !> all fits, and so is the QR factorisation of the matrix. It takes a few milliseconds and is made
 !> once; a fit is a product with Q^T and a triangular solution. By column pivoting each column is
-!> the one that depends least on those before it. With more columns the misfit falls and the moduli
-!> grow; a fit takes the number that minimises their combined cost.
+!> the one that depends least on those before it; the last ones, which would make the moduli large
+!> and the misfit hardly smaller, are left out.
 module vcor_impact_pair
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_exponential_sum, only : exponential_sum_t, parts
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
    use vcor_numeric_quadrature, only : graded_rule
-   use vcor_tuning, only : pair_digits, pair_earliest, pair_fast, pair_fastest, &
-      pair_full_weight, pair_integral, pair_most_digits, pair_power, pair_samples, pair_slowest, &
-      pair_spacing
+   use vcor_tuning, only : most => sum_most, pair_fast, pair_independent, pair_spacing, &
+      sum_samples
    implicit none
    private
 
    public :: sum_with_elastic, signed_fit_t, new_signed_fit
 
-   !> Maximum number of exponentials: each takes 1 us per impact; fitting a hundred takes 6 ms
-   integer, parameter :: most = 400
    !> Times, in units of the window, up to which the modulus is integrated. The modulus may be
    !> singular at 0 and is smooth in the logarithm of time afterwards
    real(wp), parameter :: ends(*) = [1.0e-4_wp, 3.0e-4_wp, 1.0e-3_wp, 3.0e-3_wp, 0.01_wp, 0.03_wp, &
-      0.1_wp, 0.3_wp, 1.0_wp]
+      0.1_wp, parts]
    !> Index in `ends` of the time from which values of the fit count; before, only its integral
    integer, parameter :: checked = 5
-
-   !> Relative diagonal of R below which columns are left out as dependent; the best choice is taken
-   real(wp), parameter :: dependent(*) = [1.0e-13_wp, 1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
 
    !> Data that all fits share, in units of the window
    type :: signed_fit_t
@@ -56,12 +50,8 @@ module vcor_impact_pair
       integer :: samples = 0
       !> Weights of the samples, shape (samples)
       real(wp), allocatable :: weight(:)
-      !> Number of rates for each threshold in `dependent`
-      integer :: ranks(size(dependent)) = 0
       !> Rates, the first is 0, shape (n)
       real(wp), allocatable :: rate(:)
-      !> exp(-rate time) for the samples, shape (samples, n)
-      real(wp), allocatable :: decay(:, :)
       !> Q^T of the weighted, normalised and pivoted columns, shape (n, samples)
       real(wp), allocatable :: q(:, :)
       !> R, shape (n, n)
@@ -161,25 +151,34 @@ contains
    pure subroutine set_nodes(self)
       type(signed_fit_t), intent(inout) :: self
 
-      ! spacing of the fastest rates
-      real(wp), parameter :: wide_spacing = 2.0_wp*pair_spacing
       real(wp), allocatable :: time(:), node(:)
-      integer :: usual, more, i, n
+      integer :: i, last
 
-      usual = 2 + int(log(pair_fast/pair_slowest)/pair_spacing)
-      more = nint(log(pair_fastest/pair_fast)/wide_spacing)
-      self%rate = [0.0_wp, pair_slowest*exp(pair_spacing*[(real(i, wp), i=0, usual - 2)])]
-      self%rate = [self%rate, self%rate(usual)*exp(wide_spacing*[(real(i, wp), i=1, more)])]
-      n = pair_samples*usual
-      time = [(exp(log(pair_earliest/self%rate(usual))*real(n - i, wp)/real(n - 1, wp)), i=1, n)]
-      n = pair_samples*more
-      time = [time(1)*exp(-wide_spacing/real(pair_samples, wp) &
-         *[(real(n + 1 - i, wp), i=1, n)]), time]
+      ! up to rates whose inverse is rounding
+      last = 0
+      do while (rate_at(real(last, wp))*epsilon(1.0_wp) < 1.0_wp)
+         last = last + 1
+      end do
+      self%rate = [(rate_at(real(i, wp)), i=0, last)]
+      time = [(1.0_wp/(1.0_wp + rate_at(real(i, wp)/real(sum_samples, wp))), &
+         i=sum_samples*last, 0, -1)]
       self%samples = size(time)
-      self%weight = min(1.0_wp, time/pair_full_weight)**pair_power
+      self%weight = min(1.0_wp, time/ends(checked))
 
       call graded_rule(ends, node, self%share, self%last)
       self%time = [time, node]
+
+   contains
+
+      !> Rates, numbered from 0: the first is 0, the next are equally spaced in the logarithm, and a
+      !> few at the end cover many decades
+      pure real(wp) function rate_at(number)
+         real(wp), intent(in) :: number
+
+         associate (z => exp(pair_spacing*number) - 1.0_wp)
+            rate_at = z*exp(z/pair_fast)
+         end associate
+      end function rate_at
    end subroutine set_nodes
 
    !> Factorise the matrix
@@ -189,7 +188,7 @@ contains
 
       real(wp), allocatable :: matrix(:, :), work(:)
       real(wp) :: tau(size(self%rate)), length(size(self%rate))
-      integer :: pivot(size(self%rate)), i, j, n, info
+      integer :: pivot(size(self%rate)), j, n, info
 
       n = size(self%rate)
       ! LAPACK's blocks of 64 columns need no more
@@ -204,10 +203,7 @@ contains
       pivot(1) = 1
       call dgeqp3(self%samples, n, matrix, self%samples, pivot, tau, work, size(work), info)
       if (info == 0) then
-         do i = 1, size(dependent)
-            self%ranks(i) = count([(abs(matrix(j, j)) > dependent(i)*abs(matrix(1, 1)), j=1, n)])
-         end do
-         n = self%ranks(1)
+         n = count([(abs(matrix(j, j)) > pair_independent*abs(matrix(1, 1)), j=1, n)])
          self%r = matrix(:n, :n)
          call dorgqr(self%samples, n, n, matrix, self%samples, tau, work, size(work), info)
       end if
@@ -215,10 +211,6 @@ contains
       self%q = transpose(matrix(:, :n))
       self%rate = self%rate(pivot(:n))
       self%length = length(pivot(:n))
-      allocate (self%decay(self%samples, n))
-      do j = 1, n
-         self%decay(:, j) = exp(-self%rate(j)*self%time(:self%samples))
-      end do
    end subroutine set_factors
 
    !> Fit a modulus
@@ -228,12 +220,11 @@ contains
       real(wp), intent(in) :: window
       !> Modulus at `time` times the window [Pa], >= 0, shape (n)
       real(wp), intent(in) :: modulus(:)
-      !> The sum; its moduli may be negative. Its error is the larger of the one that affects an
-      !> impact, see `error_of_integral`, and that of the integral at earlier times
+      !> The sum; its moduli may be negative
       type(exponential_sum_t), intent(out) :: terms
 
-      real(wp) :: moduli(size(self%rate)), integrals(size(ends)), excess(checked), mean
-      integer :: i, n
+      real(wp) :: moduli(size(self%rate)), integrals(size(ends))
+      integer :: i, n, info
 
       if (.not. allocated(self%q)) then
          terms%error = huge(terms%error)
@@ -246,94 +237,21 @@ contains
             integrals(i) = integrals(i - 1) + sum(integrand(last(i - 1) + 1:last(i)))
          end do
       end associate
-      mean = integrals(size(ends))
-      call find_moduli(self, modulus(:self%samples)/mean, integrals(checked)/mean, moduli, n, &
-         terms%error)
-      terms%equilibrium = mean*moduli(1)
-      terms%rates = [self%rate(2:n), maxval(self%rate)]/window
-      terms%moduli = mean*[moduli(2:n), 0.0_wp]
+      n = size(self%rate)
+      moduli = matmul(self%q, self%weight*modulus(:self%samples))
+      call dtrtrs('U', 'N', 'N', n, 1, self%r, n, moduli, n, info)
+      moduli = moduli/self%length
+      terms%equilibrium = moduli(1)
+      terms%rates = [self%rate(2:), maxval(self%rate)]/window
+      terms%moduli = [moduli(2:), 0.0_wp]
       ! one term of the fastest rate corrects the integral up to the time from which values count
-      do i = 1, checked
-         excess(i) = terms%integral(ends(i)*window) - integrals(i)*window
+      terms%moduli(n) = (integrals(checked)*window - terms%integral(ends(checked)*window)) &
+         *terms%rates(n)
+      call terms%compare(window, integrals(size(ends) - size(parts) + 1:)*window)
+      do i = checked + 1, size(ends) - size(parts)
+         terms%error = max(terms%error, &
+            abs(terms%integral(ends(i)*window)/(integrals(i)*window) - 1.0_wp))
       end do
-      terms%moduli(n) = -excess(checked)*terms%rates(n)
-      ! effect of the error at earlier times on the impulse
-      excess = abs(excess - excess(checked))/(integrals(checked)*window)
-      terms%error = max(terms%error, maxval(excess))
    end subroutine fit
-
-   !> Error that affects an impact. The force is the integral of the modulus with a smooth rate, and
-   !> the error of the modulus oscillates, so what counts is the error of the integral since the
-   !> time from which values count. It may have different signs in loading and unloading, hence
-   !> the factor `pair_integral`; the error measured was never more than twice this estimate where
-   !> it was above rounding
-   pure function error_of_integral(self, deviation, sample, early) result(error)
-      type(signed_fit_t), intent(in) :: self
-      !> Error at the samples, over the mean modulus, shape (samples)
-      real(wp), intent(in) :: deviation(:)
-      !> Modulus at the samples, over the mean, shape (samples)
-      real(wp), intent(in) :: sample(:)
-      !> Integral of the modulus up to that time, over the mean modulus
-      real(wp), intent(in) :: early
-      !> Relative error
-      real(wp) :: error
-
-      real(wp) :: lost, whole, step
-      integer :: i
-
-      error = 0.0_wp
-      lost = 0.0_wp
-      whole = early
-      do i = 2, size(sample)
-         if (self%time(i - 1) < ends(checked)) cycle
-         step = 0.5_wp*(self%time(i) - self%time(i - 1))
-         lost = lost + step*(deviation(i - 1) + deviation(i))
-         whole = whole + step*(sample(i - 1) + sample(i))
-         error = max(error, pair_integral*abs(lost)/whole)
-      end do
-   end function error_of_integral
-
-   !> Moduli of the rates, with the number of rates of the least cost
-   pure subroutine find_moduli(self, sample, early, moduli, n, error)
-      type(signed_fit_t), intent(in) :: self
-      !> Modulus at the samples divided by its mean, shape (samples)
-      real(wp), intent(in) :: sample(:)
-      !> Integral of the modulus up to the time from which values count, over the mean modulus
-      real(wp), intent(in) :: early
-      !> Moduli divided by the mean, shape (rates)
-      real(wp), intent(out) :: moduli(:)
-      !> Number of rates used
-      integer, intent(out) :: n
-      !> Error that affects an impact
-      real(wp), intent(out) :: error
-
-      real(wp), dimension(size(self%rate)) :: right, x, late
-      real(wp), dimension(size(sample)) :: weighted, deviation
-      real(wp) :: misfit, size_of_all, cost, least
-      integer :: i, info
-
-      weighted = self%weight*sample
-      right = matmul(self%q, weighted)
-      late = exp(-self%rate*ends(checked))
-      least = huge(least)
-      n = self%ranks(1)
-      moduli = 0.0_wp
-      error = huge(error)
-      do i = 1, size(dependent)
-         x = right
-         call dtrtrs('U', 'N', 'N', self%ranks(i), 1, self%r, size(x), x, size(x), info)
-         x(self%ranks(i) + 1:) = 0.0_wp
-         x = x/self%length
-         deviation = matmul(self%decay, x) - sample
-         misfit = maxval(abs(deviation), mask=self%time(:self%samples) >= ends(checked))
-         size_of_all = sum(abs(x*late))
-         cost = misfit + pair_most_digits*size_of_all
-         if (cost >= least) cycle
-         least = cost
-         n = self%ranks(i)
-         moduli = x
-         error = error_of_integral(self, deviation, sample, early) + pair_digits*size_of_all
-      end do
-   end subroutine find_moduli
 
 end module vcor_impact_pair

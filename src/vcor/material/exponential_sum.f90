@@ -5,7 +5,11 @@ module vcor_material_exponential_sum
    implicit none
    private
 
-   public :: exponential_sum_t, same_rate
+   public :: exponential_sum_t, parts, same_rate
+
+   integer :: i_part
+   !> Parts of a window up to which the integrals of a sum and of what it stands for are compared
+   real(wp), parameter :: parts(*) = [(0.2_wp*real(i_part, wp), i_part=1, 5)]
 
    !> Relative difference up to which two rates are the same but for rounding
    real(wp), parameter :: same_rate = 1.0e-13_wp
@@ -21,12 +25,14 @@ module vcor_material_exponential_sum
       real(wp), allocatable :: rates(:)
       !> Viscosity of the dashpot in parallel [Pa s], >= 0
       real(wp) :: viscosity = 0.0_wp
-      !> Estimated largest relative error of the sum as an approximation of a modulus [-]; 0: exact
+      !> Estimated largest relative error of the integral of the sum, if it approximates a modulus
+      !> [-]; 0: exact
       real(wp) :: error = 0.0_wp
    contains
       procedure :: scale
       procedure :: value
       procedure :: integral
+      procedure :: compare
       procedure :: complex_modulus
       procedure :: find_zeros
    end type exponential_sum_t
@@ -77,6 +83,34 @@ contains
       end do
       value = value + relaxed
    end function integral
+
+   !> Set the error by integrals of what the sum stands for. A force is the integral of a modulus
+   !> times a smooth rate, so errors of the modulus count as those of its integral
+   pure subroutine compare(self, window, expected)
+      class(exponential_sum_t), intent(inout) :: self
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Integrals from 0 to `parts` of the window, dashpot included [Pa s], > 0, same shape
+      real(wp), intent(in) :: expected(:)
+
+      real(wp) :: found(size(parts)), half, once, relaxed, scale
+      integer :: i, k
+
+      found = self%viscosity + self%equilibrium*window*parts
+      do k = 1, size(self%rates)
+         ! 1 - exp(-l t) for the first part, as in `integral`; by it for the others, as the parts
+         ! are of equal length
+         half = tanh(0.5_wp*self%rates(k)*(window*parts(1)))
+         once = 2.0_wp*half/(1.0_wp + half)
+         scale = self%moduli(k)/self%rates(k)
+         relaxed = 0.0_wp
+         do i = 1, size(parts)
+            relaxed = relaxed + once*(1.0_wp - relaxed)
+            found(i) = found(i) + scale*relaxed
+         end do
+      end do
+      self%error = maxval(abs(found/expected - 1.0_wp))
+   end subroutine compare
 
    !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s
    elemental function complex_modulus(self, s) result(modulus)

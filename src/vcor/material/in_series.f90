@@ -15,6 +15,7 @@ module vcor_material_in_series
    use vcor_material_prony, only : new_prony, prony_t
    use vcor_material_spectrum, only : sum_of_resolved_spectrum, transform_t
    use vcor_material_type, only : material_t
+   use vcor_tuning, only : sum_most
    implicit none
    private
 
@@ -79,7 +80,6 @@ contains
       if (allocated(prony)) then
          allocate (series%terms)
          call prony%exponentials(1.0_wp, 1.0_wp, series%terms)
-         series%terms%error = max(a%error, b%error)
       end if
       call series%prepare()
       series%discrete = allocated(series%terms)
@@ -230,12 +230,17 @@ contains
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
 
+      type(exponential_sum_t) :: one, other
+
       if (allocated(self%terms)) then
+         ! the modulus of two in series errs at most as one of both does, relative
+         call self%first%exponentials(window, accuracy, one)
+         call self%second%exponentials(window, accuracy, other)
          terms = self%terms
+         terms%error = max(one%error, other%error)
          return
       end if
-      call sum_of_resolved_spectrum(self, window, accuracy, terms)
-      terms%viscosity = terms%viscosity + self%viscosity
+      call sum_of_resolved_spectrum(self, window, accuracy, sum_most, terms)
    end subroutine exponentials
 
 end module vcor_material_in_series

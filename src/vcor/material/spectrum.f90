@@ -15,15 +15,13 @@
 !> to the edge. Rates below all nodes are lumped into a constant, those above them into a dashpot.
 module vcor_material_spectrum
    use vcor_kinds, only : pi, unset, wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_exponential_sum, only : exponential_sum_t, parts
    use vcor_material_type, only : material_t
-   use vcor_tuning, only : spectrum_above, spectrum_below, spectrum_farther_above, &
-      spectrum_farther_below, spectrum_integral, spectrum_loosest, spectrum_runs, spectrum_slow, &
-      spectrum_tail
+   use vcor_tuning, only : spectrum_finer
    implicit none
    private
 
-   public :: fractional_t, sum_of_resolved_spectrum, rule_for_spectrum
+   public :: fractional_t, sum_of_resolved_spectrum
    public :: transform_t
 
    !> Rate times window below which a term is lumped into the constant, above its inverse into the
@@ -105,36 +103,32 @@ contains
       class(fractional_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
+      !> Wanted relative accuracy, > 0, < 1
       real(wp), intent(in) :: accuracy
-      !> The sum; `terms%error` is the largest relative error at some times of the window
+      !> The sum, with the error of its integral
       type(exponential_sum_t), intent(out) :: terms
 
-      call rule_for_spectrum(self, window, accuracy, terms, self%peak, self%distance)
-      terms%error = largest_error(self, window, terms)
+      call rule_for_spectrum(self, window, accuracy, 1.0_wp, terms, self%peak, self%distance)
+      call terms%compare(window, self%integral(window*parts))
    end subroutine exponentials
 
-   !> The quadrature rule as a sum; `terms%error` is not set
-   pure subroutine rule_for_spectrum(material, window, accuracy, terms, peak, distance, finer, &
-                                     below, above)
+   !> The quadrature rule as a sum, without its error
+   pure subroutine rule_for_spectrum(material, window, accuracy, finer, terms, peak, distance)
       !> The material; its rubbery modulus is E_0
       class(material_t), intent(in) :: material
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
+      !> Wanted relative accuracy, > 0, < 1
       real(wp), intent(in) :: accuracy
+      !> Power of the accuracy for which the rule is made, and by whose logarithm its ends lie
+      !> farther out, for features at unknown rates; 1 without such
+      real(wp), intent(in) :: finer
       type(exponential_sum_t), intent(out) :: terms
       !> ln of the rate [1/s] at the peak of the spectrum; absent: the spectrum is a power of the
-      !> rate
+      !> rate, or unknown
       real(wp), intent(in), optional :: peak
       !> Distance d of the poles from the peak in ln(l), > 0
       real(wp), intent(in), optional :: distance
-      !> Factor by which the step is reduced; absent: 1
-      real(wp), intent(in), optional :: finer
-      !> Shift of x_a towards slow rates; absent: 0
-      real(wp), intent(in), optional :: below
-      !> Shift of x_b towards fast rates; absent: 0
-      real(wp), intent(in), optional :: above
 
       ! |y| beyond which rates cannot be computed
       real(wp), parameter :: farthest = 600.0_wp
@@ -143,21 +137,19 @@ contains
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
 
-      h = -pi**2/log(min(accuracy, spectrum_loosest))
-      turn_low = log(spectrum_slow)
-      turn_high = -log(min(accuracy, spectrum_loosest))/3.0_wp
-      if (present(finer)) h = h/finer
-      if (present(below)) turn_low = turn_low - below
-      if (present(above)) turn_high = turn_high + above
+      h = -pi**2/(finer*log(accuracy))
+      turn_low = log(accuracy)/3.0_wp*log(finer)
+      turn_high = -log(accuracy)/3.0_wp*(1.0_wp + log(finer))
       shift = -log(window)
       c = 0.0_wp
       d = 1.0_wp
       y_p = 0.0_wp
       if (present(peak) .and. present(distance)) then
          y_p = peak - shift
-         ! x_a and x_b must lie where the spectrum is a power of the rate
-         turn_low = min(turn_low, y_p - spectrum_below)
-         turn_high = max(turn_high, y_p + spectrum_above)
+         ! seen in x, a turn at the distance D moves the poles by exp(-D) into the strip: they
+         ! raise the error of the rule by exp(1)
+         turn_low = min(turn_low, y_p - log(2.0_wp*pi/h))
+         turn_high = max(turn_high, y_p + log(2.0_wp*pi/h))
          d = distance
          c = max(0.0_wp, 1.0_wp - 2.0_wp*d/pi)
          turn_low = turn_low + c*asinh((turn_low - y_p)/d)
@@ -204,42 +196,41 @@ contains
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
       ! for an exponent near 0 part of the constant lies below all rates; E gives it
-      if (head > spectrum_tail*accuracy*terms%equilibrium) terms%equilibrium = terms%equilibrium &
+      if (head > accuracy*terms%equilibrium) terms%equilibrium = terms%equilibrium &
          + (material%relaxation(window) - terms%value(window))
       ! for an exponent near 1 part of the dashpot lies beyond all rates; the integral of E gives it
-      if (tail > spectrum_tail*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
+      if (tail > accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
          + (material%integral(window) - terms%integral(window))
    end subroutine rule_for_spectrum
 
-   !> Sum of exponentials for a spectrum with features at unknown rates, refined until modulus and
-   !> integral are accurate. If they never are, the best sum is returned, with its error
-   pure subroutine sum_of_resolved_spectrum(material, window, accuracy, terms)
-      !> The material; its rubbery modulus is E_0, and its dashpot is not part of the sum
+   !> Sum of exponentials for a spectrum with features at unknown rates: the rule is made finer
+   !> until its integral is as accurate as wanted, or it has too many terms. The best sum is
+   !> returned, with its error
+   pure subroutine sum_of_resolved_spectrum(material, window, accuracy, most, terms)
+      !> The material; its rubbery modulus is E_0
       class(material_t), intent(in) :: material
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
+      !> Wanted relative accuracy, > 0, < 1
       real(wp), intent(in) :: accuracy
+      !> Number of terms beyond which it is made no finer
+      integer, intent(in) :: most
+      !> The sum, with the dashpot of the material
       type(exponential_sum_t), intent(out) :: terms
 
-      real(wp), parameter :: part(2) = [1.0_wp, 0.01_wp]
-      type(exponential_sum_t) :: sum_now
-      real(wp) :: expected, found
-      integer :: i, refinement
+      type(exponential_sum_t) :: next
+      real(wp) :: integrals(size(parts)), finer
 
+      integrals = material%viscosity + material%integral(window*parts)
       terms%error = huge(1.0_wp)
-      do refinement = 0, spectrum_runs
-         call rule_for_spectrum(material, window, accuracy, sum_now, finer=2.0_wp**refinement, &
-            below=spectrum_farther_below*real(refinement, wp), &
-            above=spectrum_farther_above*real(refinement, wp))
-         sum_now%error = largest_error(material, window, sum_now)
-         do i = 1, size(part)
-            expected = material%integral(part(i)*window)
-            found = sum_now%integral(part(i)*window)
-            sum_now%error = max(sum_now%error, spectrum_integral*abs(found/expected - 1.0_wp))
-         end do
-         if (sum_now%error < terms%error) terms = sum_now
-         if (terms%error <= 2.0_wp*accuracy) exit
+      finer = 1.0_wp
+      do
+         call rule_for_spectrum(material, window, accuracy, finer, next)
+         next%viscosity = next%viscosity + material%viscosity
+         call next%compare(window, integrals)
+         if (next%error < terms%error) terms = next
+         if (terms%error <= accuracy .or. size(next%rates) > most) exit
+         finer = spectrum_finer*finer
       end do
    end subroutine sum_of_resolved_spectrum
 
@@ -263,36 +254,6 @@ contains
          if (abs(correction) <= 1.0e-12_wp*abs(w)) exit
       end do
    end function solve_sinh
-
-   !> Largest relative error of a sum at some times of the window. At shorter times it may be
-   !> larger; there only integrals of the modulus count, which the rule preserves
-   pure function largest_error(material, window, terms) result(error)
-      class(material_t), intent(in) :: material
-      !> Time up to which the sum is to hold [s]
-      real(wp), intent(in) :: window
-      type(exponential_sum_t), intent(in) :: terms
-      real(wp) :: error
-
-      ! in parts of equal length, one exponential per term gives all values
-      integer, parameter :: parts = 5
-      real(wp) :: value(parts), decay, term
-      integer :: i, k
-
-      value = terms%equilibrium
-      do k = 1, size(terms%rates)
-         decay = exp(-terms%rates(k)*(window/real(parts, wp)))
-         term = terms%moduli(k)
-         do i = 1, parts
-            term = term*decay
-            value(i) = value(i) + term
-         end do
-      end do
-      error = 0.0_wp
-      do i = 1, parts
-         error = max(error, abs(value(i)/material%relaxation(real(i, wp)/real(parts, wp)*window) &
-            - 1.0_wp))
-      end do
-   end function largest_error
 
    !> Set nodes w = s t and weights, which include exp(w), such that f(t) = Im(sum(weight*F(w/t)))/t
    pure subroutine prepare(self)

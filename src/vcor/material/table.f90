@@ -8,13 +8,12 @@
 module vcor_material_table
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : unset, wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_exponential_sum, only : exponential_sum_t, parts
    use vcor_material_type, only : material_t, parameter_t, poisson_ratio
    use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    use vcor_numeric_nnls, only : solve_nnls
-   use vcor_tuning, only : table_fastest, table_gain, table_loss, table_misfit, table_rates, &
-      table_refinements, table_samples
+   use vcor_tuning, only : sum_samples, table_fastest, table_misfit, table_rates
    implicit none
    private
 
@@ -58,8 +57,8 @@ module vcor_material_table
       real(wp) :: weight(order) = 0.0_wp
       !> Sum of exponentials fitted to the points
       type(exponential_sum_t) :: terms = exponential_sum_t(unset, null(), null())
-      !> Integral up to the first point, of the sum less that of E [Pa s]
-      real(wp) :: early_excess = 0.0_wp
+      !> Integral from 0 to `x` of the sum less that of E, in units of E_1 t_1, shape (n)
+      real(wp), allocatable :: excess(:)
    contains
       procedure :: relaxation
       procedure :: rate
@@ -164,16 +163,13 @@ contains
          return
       end if
       associate (length => self%x(size(self%x)))
-         n = ceiling(length/log(10.0_wp)*table_samples)
+         n = ceiling(length/log(10.0_wp)*table_rates*real(sum_samples, wp))
          step = length/real(n, wp)
       end associate
       time = self%first_time*exp([(real(i, wp)*step, i=0, n)])
       call fit_exponentials(time, self%relaxation(time), self%terms)
-      ! the misfit between the samples and at the points counts too
-      time = self%first_time*exp([[(0.25_wp*real(i, wp)*step, i=1, 4*n)], self%x])
-      self%early_excess = self%terms%integral(self%first_time) &
-         - self%first_modulus*self%first_time
-      self%terms%error = maxval(abs(self%terms%value(time)/self%relaxation(time) - 1.0_wp))
+      self%excess = self%terms%integral(self%first_time*exp(self%x)) &
+         /(self%first_modulus*self%first_time) - self%area
    end subroutine set_terms
 
    !> Multiply all times and all moduli without a new fit; only while the material is being built,
@@ -189,7 +185,6 @@ contains
       self%first_modulus = moduli_by*self%first_modulus
       call self%terms%scale(moduli_by)
       self%terms%rates(:) = self%terms%rates/times_by
-      self%early_excess = times_by*moduli_by*self%early_excess
    end subroutine rescale
 
    !> y and its slope at x within the data
@@ -332,18 +327,26 @@ contains
       real(wp), intent(in) :: window
       !> Relative accuracy wanted: has no effect, as the sum represents all that the data contain
       real(wp), intent(in) :: accuracy
-      !> The sum; `terms%error` is the largest relative misfit from the first point to the last, or
-      !> to half the window, where the contact is expected to end, plus the error of the integral up
-      !> to the first point, over the integral of the window
+      !> The sum, with the error of its integral up to half the window, where the contact is
+      !> expected to end; data may have steps, so it counts at all points, too
       type(exponential_sum_t), intent(out) :: terms
+
+      integer :: i
 
       associate (not_needed => accuracy)
       end associate
       terms = self%terms
       if (size(terms%rates) == 0) return
-      terms%error = max(terms%error, &
-         abs(terms%value(0.5_wp*window)/self%relaxation(0.5_wp*window) - 1.0_wp)) &
-         + abs(self%early_excess)/self%integral(window)
+      associate (end => 0.5_wp*window)
+         call terms%compare(end, self%integral(end*parts))
+         do i = 1, size(self%x)
+            associate (t => self%first_time*exp(self%x(i)))
+               if (t > end) exit
+               terms%error = max(terms%error, self%first_modulus*self%first_time &
+                  *abs(self%excess(i))/self%integral(max(t, end*parts(1))))
+            end associate
+         end do
+      end associate
    end subroutine exponentials
 
    !> Fit E(t) = E_0 + sum E_k exp(-l_k t), E_0 and E_k >= 0
@@ -356,7 +359,7 @@ contains
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp), allocatable :: grid(:), rate(:), weight(:), finer(:), better(:)
-      real(wp) :: spacing, residual, misfit, new_residual, new_misfit, bound, width
+      real(wp) :: spacing, residual, misfit, new_residual, new_misfit, width
       integer :: i, n
 
       ! the variable is the logarithm of the rate
@@ -371,28 +374,28 @@ contains
       rate = grid
       call fit(time, modulus, rate, weight, residual, misfit)
       width = spacing
-      do i = 1, table_refinements
-         if (misfit <= table_misfit) exit
+      do while (misfit > table_misfit .and. width**2 > table_misfit)
          width = 0.5_wp*width
          finer = refined(rate, width, grid)
          call fit(time, modulus, finer, better, new_residual, new_misfit, guess=rate)
-         if (.not. new_residual*real(size(finer), wp)**2 &
-            < table_gain*residual*real(size(rate), wp)**2) exit
+         if (.not. new_residual*real(size(finer), wp)**3 &
+            < residual*real(size(rate), wp)**3) exit
          call move_alloc(finer, rate)
          call move_alloc(better, weight)
          residual = new_residual
          misfit = new_misfit
       end do
 
-      bound = max(table_misfit, table_loss*misfit)
       do while (width < 2.0_wp*spacing .and. size(rate) > 1)
          finer = merged(rate, weight(1:), 1.01_wp*width)
          width = 2.0_wp*width
          if (size(finer) == size(rate)) cycle
          call fit(time, modulus, finer, better, new_residual, new_misfit)
-         if (.not. new_misfit <= bound) exit
+         if (new_misfit > table_misfit .and. new_residual*real(size(finer), wp)**3 &
+            > residual*real(size(rate), wp)**3) exit
          call move_alloc(finer, rate)
          call move_alloc(better, weight)
+         residual = new_residual
          misfit = new_misfit
       end do
 

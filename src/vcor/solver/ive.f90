@@ -16,7 +16,7 @@ module vcor_solver_ive
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_march, only : follow
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : ive_loosest, sum_error, sum_growth, sum_share, sum_window
+   use vcor_tuning, only : ive_loosest, sum_share, sum_window
    implicit none
    private
 
@@ -132,7 +132,8 @@ contains
          call follow(self%rules, self%bridge, impact, sums, self%accuracy, effort%march, &
             time_scale, end_time, window, trajectory, of_march, complete, error)
          if (complete .or. allocated(error)) exit
-         effort%window = sum_growth*window
+         ! 4, 16, 256 .. times the expected contact time
+         effort%window = window*max(sum_window, window/(impact%law%contact_time*time_scale))
       end do
       if (allocated(error)) return
       trajectory%accuracy = self%settings%accuracy
@@ -225,7 +226,7 @@ contains
          if (impact%plate%hereditary()) of_plate = max(sums%plate%error, &
             abs(sums%plate%integral(last(col_time))/(impact%plate%alpha(0.0_wp) &
             + impact%plate%memory_integral(last(col_time))) - 1.0_wp))
-         felt = sum_error*of_kernel + of_plate
+         felt = of_kernel + of_plate
          errors(of_cor:of_cor_sphere) = felt
          errors(of_time) = felt*last(col_time)*impact%velocity/abs(last(col_velocity))
          errors(of_force) = (felt + variation*of_integral)*trajectory%max_force

@@ -26,7 +26,7 @@ module vcor_solver_ive_march
    use vcor_solver_ive_panel, only : step_t
    use vcor_tuning, only : ive_continuous, ive_cut, ive_ends, ive_first, ive_growth, &
       ive_leftover, ive_part, ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, &
-      ive_safety, ive_share, ive_tolerable, ive_usual, sum_error
+      ive_safety, ive_share, ive_tolerable, ive_usual
    implicit none
    private
 
@@ -133,7 +133,7 @@ contains
       self%accuracy = max(accuracy*(impact%velocity/self%speed), min(accuracy, finest_accuracy))
       ! the noise of moduli of both signs must not be resolved
       floor = 0.0_wp
-      if (any(sums%contact%moduli < 0.0_wp)) floor = sum_error*sums%contact%error
+      if (any(sums%contact%moduli < 0.0_wp)) floor = sums%contact%error
       self%tolerance = max(ive_share*share*self%accuracy, floor, ive_rounding_per_panel)
       self%bridge => bridge
       call start_motion(self%fine, rules(1))

@@ -99,7 +99,7 @@ contains
             call raise(error, error_input, "form = 'b' needs a modulus with a finite rate at " &
                //"t = 0, which this contact does not have; use form = 'a'")
          else if (abs(self%settings%second_coefficient) > 0.0_wp) then
-            call impact%kernel_exponentials(impact%time_scale(), 1.0_wp, terms)
+            call impact%kernel_exponentials(impact%time_scale(), 0.1_wp, terms)
             if (terms%error > 0.0_wp) call raise(error, error_input, 'the second Volterra term ' &
                //"in form = 'b' needs a modulus that is a sum of exponentials; use form = 'a'")
          end if

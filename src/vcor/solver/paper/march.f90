@@ -255,7 +255,7 @@ contains
       call run%kernel%set(kernel(:room - 1))
       if (two_terms .and. settings%form == 'b') then
          ! k'' of a finite sum of exponentials; other kernels are refused
-         call impact%kernel_exponentials(run%dt*real(room, wp), 1.0_wp, terms)
+         call impact%kernel_exponentials(run%dt*real(room, wp), 0.1_wp, terms)
          do i = 0, 2*room - 1
             kernel(i) = sum(terms%moduli*terms%rates**2*exp(-terms%rates*(run%dt*real(i, wp))))
          end do
