@@ -136,7 +136,7 @@ class Reader:
             return "relaxation"
         if "shift_factor" in names:
             return "shift"
-        if {"loss_tangent", "frequency"} <= names:
+        if "loss_tangent" in names and ("frequency" in names or not names & _IMPACTS):
             return "dynamic"
         history, impact = quantities()
         if times and names & (history | {"force", "acceleration"}):
@@ -582,7 +582,7 @@ class Reader:
         fit = [head.text for head in free if head.unit and size(head.unit, si)]
         one = fit[-1].strip() if fit else "HEAD"
         more = "; a temperature sweep at one frequency tells no shifts, those at several do"
-        more *= lacks == ["frequency"] and "temperature" in _known(table)
+        more *= "frequency" in lacks and "temperature" in _known(table)
         return InputError(
             f"{place}: found {told}, but no column of the {words}, expected one named as "
             f"{names}, or {option('columns', {lacks[0]: one})}{more}"
