@@ -461,7 +461,8 @@ contains
 
       text = trim(thresholds(measure)%measure)
       text = text//' '//brief(quantity_value(outcome, text))
-      if (thresholds(measure)%measure == 'contact_ratio' .and. value > outcome%contact_ratio) &
+      if (thresholds(measure)%measure /= 'contact_ratio') return
+      if (value > outcome%contact_ratio) &
          text = text//" (three times the sphere's share: "//brief(value)//')'
    end function measure_text
 
@@ -574,8 +575,7 @@ contains
 
       address = case%address('impact', 'temperature')
       given = case%number(address)
-      allocate (temperatures(count([.not. ieee_is_nan(given)])))
-      temperatures = given
+      temperatures = pack([given], [.not. ieee_is_nan(given)])
       do i = 1, size(grid%axes)
          if (grid%axes(i)%address == address) temperatures = grid%axes(i)%values
       end do
