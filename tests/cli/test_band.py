@@ -24,7 +24,7 @@ def test_data_that_begin_too_late(vcor):
     assert line.startswith("vcor: warning: ") and line.count("\n") == 1
     assert "valid_from 1.0E-06 s" in line and "'butyl'" in line
     assert "the contact lasts 7.7E-04 s, and 0.13 % of it lies before the data" in line
-    assert change(line) == pytest.approx(1.1e-2, rel=0.05) and "rests on the extrapolation of the fit" in line
+    assert change(line) == pytest.approx(1.1e-2, rel=0.05) and "depends on the extrapolation of the fit" in line
 
 
 def test_contact_before_all_data(vcor):
