@@ -534,7 +534,9 @@ contains
       type(course_t), intent(in) :: self
       logical :: is_lost
 
-      is_lost = self%fine%recedes .and. self%fine%start%t1 < 1.0e-6_wp*self%fine%approach%end
+      is_lost = self%fine%recedes
+      ! before the rebound there is no t1
+      if (is_lost) is_lost = self%fine%start%t1 < 1.0e-6_wp*self%fine%approach%end
    end function is_lost
 
    !> Say that the end of the contact is out of reach
