@@ -33,8 +33,8 @@ module vcor_app_help
       "'kernel as a sum of 35 exponentials, to 6.0E-10': method ive writes a relaxation modulus " &
       //"with a continuous spectrum (power law, CERF, Mittag-Leffler, tables, some pairs) as a " &
       //"sum of exponentials. Their number follows from solver.accuracy. The second number is " &
-      //"the largest relative error of the sum over the contact time; cor_error includes it. A " &
-      //"Prony series is such a sum already, so nothing is printed.", &
+      //"the largest relative error of its integral over the contact time; cor_error includes it. "&
+      //"A Prony series is such a sum already, so nothing is printed.", &
       "estimated numerical error of the number before it: cor_error or cor_sphere_error. It says " &
       //"nothing about the model or the material data."]
 

@@ -387,7 +387,8 @@ contains
       call make_product(0.0_wp, 1.0e-6_wp, product)
       call product%solve(row%impact, trajectory, error)
       call success(error, "a spike of alpha' is solved")
-      call check(trajectory%steps <= 1000, "without resolving it")
+      ! one step per relaxation time were 4900
+      call check(trajectory%steps <= 2500, "without resolving it")
 
       call build(row, "a receding plate", &
          fluid([character(len=9) :: "0.2778", "0.003925", "4.055e-9", "4.063e4"]))

@@ -56,7 +56,6 @@ module vcor_impact_problem
       procedure :: kernel_viscosity
       procedure :: time_scale
       procedure, private :: elastic_time
-      procedure :: fast_time_scale
       procedure :: patience
       procedure :: outruns
       procedure :: first_force
@@ -321,21 +320,6 @@ contains
       end do
       time = guess
    end function elastic_time
-
-   !> Time scale of the fastest motion: that of the glassy contact if its modulus is finite, as a
-   !> contact that relaxes early may be shorter than its time scale
-   pure function fast_time_scale(self) result(scale)
-      class(impact_t), intent(in) :: self
-      !> Time scale [s]
-      real(wp) :: scale
-
-      real(wp) :: firmness
-
-      scale = self%time_scale()
-      firmness = self%factor*self%modulus%glassy()
-      if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
-         scale = min(scale, self%elastic_time(firmness))
-   end function fast_time_scale
 
    !> Default time after which a contact counts as lasting: a thousand time scales, with the rubbery
    !> modulus if there is one

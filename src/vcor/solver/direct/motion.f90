@@ -16,7 +16,7 @@ module vcor_solver_direct_motion
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
    use vcor_solver_direct_weights, only : memory_weights
-   use vcor_tuning, only : direct_near, direct_stiff, direct_unresolved
+   use vcor_tuning, only : direct_near, direct_unresolved
    implicit none
    private
 
@@ -122,7 +122,9 @@ contains
       self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
       response = self%alpha + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
-      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > direct_stiff) &
+      ! trapezoids damp at once what decays at the rate 2/dt, and what is faster better than the
+      ! rule of Adams and Moulton, which is stable up to 6/dt
+      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > 2.0_wp) &
          self%rule = self%dt*trapezoid
       self%weight = self%rule(1)
       call go_on(self%force, self%rule)

@@ -29,8 +29,7 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
-   use vcor_tuning, only : direct_cancelled, direct_first_steps, direct_force, direct_last_part, &
-      direct_least_part, direct_most_steps, direct_most_work
+   use vcor_tuning, only : direct_first_steps, direct_force, direct_most_work
    implicit none
    private
 
@@ -104,9 +103,7 @@ contains
          if (time_step > 0.0_wp) then
             dt = 4.0_wp*time_step
          else
-            ! a fast glassy modulus shortens the steps by a factor of direct_least_part at most
-            dt = impact%law%contact_time/real(direct_first_steps, wp) &
-               *max(impact%fast_time_scale(), impact%time_scale()/direct_least_part)
+            dt = impact%law%contact_time/real(direct_first_steps, wp)*impact%time_scale()
             ! make the end time a whole number of steps
             if (end_time > 0.0_wp) &
                dt = end_time/real(ceiling(min(end_time/dt, real(most_steps(.false.), wp))), wp)
@@ -146,8 +143,7 @@ contains
                found = richardson(contact_time)
                trajectory%contact_time_error = found%error
                ! cor has the errors of cor_sphere and of the plate, which cancel only by chance
-               trajectory%cor_error = max(trajectory%cor_error, &
-                  direct_cancelled*trajectory%cor_sphere_error)
+               trajectory%cor_error = max(trajectory%cor_error, trajectory%cor_sphere_error)
                ! if the contact is small when it grows again, few springs resolve it, and the three
                ! runs may not yet show the order
                if (trajectory%regrows) then
@@ -180,13 +176,13 @@ contains
       end associate
    end subroutine solve
 
-   !> Largest number of steps of a run, half as many if the contact has grown again, as it seldom
-   !> ends soon then
+   !> Largest number of steps n of a run, whose sums take n^2/2 multiplications; half as many if the
+   !> contact has grown again, as it seldom ends soon then
    pure integer function most_steps(regrows)
       !> Whether the contact has grown again
       logical, intent(in) :: regrows
 
-      most_steps = direct_most_steps
+      most_steps = int(sqrt(2.0_wp*direct_most_work))
       if (regrows) most_steps = most_steps/2
    end function most_steps
 
@@ -200,8 +196,7 @@ contains
       !> Expected number of steps, for memory; more are possible
       integer, intent(in) :: expected
       type(trajectory_t), intent(out) :: trajectory
-      !> Whether the step is too long: for the growth of the plate's alpha, or because the last step
-      !> of a receding contact covers too much of the approach
+      !> Whether the step is too long for the growth of the plate's alpha
       logical, intent(out) :: crude
       !> Number of multiplications for springs, which grows with the cube of the number of steps
       real(wp), intent(out) :: work
@@ -209,7 +204,7 @@ contains
 
       type(run_t) :: run
       real(wp) :: end_time, node(columns), alpha, theta
-      integer :: n, room, turn, most
+      integer :: n, room, most
       logical :: ends, stopped
 
       end_time = settings%end_time
@@ -227,7 +222,6 @@ contains
       trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
       crude = .false.
       work = 0.0_wp
-      turn = 0
       n = 0
       do
          n = n + 1
@@ -250,7 +244,6 @@ contains
          crude = crude .or. &
             impact%outruns(alpha, run%motion%alpha, run%motion%impulse, run%motion%t)
          if (crude .and. .not. settings%time_step > 0.0_wp) return
-         if (.not. run%receding%shrinks) turn = n
          if (run%receding%regrows) then
             ! the weight may make it grow again: stop if the remaining energy cannot separate it
             call trajectory%stop_at_rest(impact, .true., stopped)
@@ -284,7 +277,6 @@ contains
             call find_dip(trajectory%state(col_force, n - 2:n), theta, ends)
          if (run%receding%shrinks) then
             ends = run%receding%t1(3) <= 0.0_wp
-            crude = crude .or. ends .and. run%receding%t1(2) > direct_last_part*real(turn, wp)
             if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
                trajectory, n)
          else if (ends) then
