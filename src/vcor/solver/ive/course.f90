@@ -133,6 +133,8 @@ contains
          trajectory%steps = trajectory%steps + 1
          trajectory%share(first + 1:first + n) = rule%weight(1:n)*panel%pace(rule%point(1:n)) &
             *panel%force(1:n)
+         if (self%ends) trajectory%share(first + n) = panel%impulse(n) - panel%impulse(0) &
+            - sum(trajectory%share(first + 1:first + n - 1))
          do j = 1, n
             associate (state => trajectory%state(:, first + j))
                state(col_time) = panel%time(j)

@@ -14,12 +14,12 @@ module vcor_solver_ive_event
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_panel
    use vcor_solver_ive_panel, only : panel_t, step_t
-   use vcor_tuning, only : ive_rounding_per_panel
+   use vcor_tuning, only : ive_contraction, ive_rounding_per_panel
    implicit none
    private
 
    public :: event_turn, event_end, event_close
-   public :: cut_at_event, time_to_event, first_without_force, solve_up_to
+   public :: cut_at_event, time_to_event, time_to_zero, first_without_force, solve_up_to
 
    !> The events
    integer, parameter :: event_turn = 1, event_end = 2, event_close = 3
@@ -54,6 +54,8 @@ contains
 
       found = .false.
       correction = huge(1.0_wp)
+      allowed = near*sqrt(accuracy)
+      if (event == event_close .and. motion%impact%plate%hereditary()) allowed = near*accuracy
       duration = time
       do iteration = 1, most
          last = motion%panel
@@ -67,19 +69,12 @@ contains
          if (.not. found) return
          if (event == event_close) correction = sign(min(abs(correction), longest*duration), &
             correction)
-         allowed = accuracy*duration
-         if (event == event_turn) allowed = near*sqrt(accuracy)*duration
-         ! the velocity of a plate with a memory follows the force, which ends as the 3/4 power of
-         ! the time left
-         if (event == event_close .and. motion%impact%plate%hereditary()) &
-            allowed = accuracy**(4.0_wp/3.0_wp)*duration
-         found = abs(correction) <= allowed .or. iteration > 3 &
+         found = abs(correction) <= allowed*duration .or. iteration > 3 &
             .and. abs(correction) <= rounding*(motion%start%time + duration) &
             .and. abs(correction) >= 0.25_wp*abs(last_correction)
          ! on a plate that goes along, s' may fall slowly
          if (event == event_turn) found = found &
-            .and. abs(motion%panel%velocity(motion%panel%stages)) &
-            <= near*sqrt(accuracy)*motion%impact%velocity
+            .and. abs(motion%panel%velocity(motion%panel%stages)) <= allowed*motion%impact%velocity
          if (found) return
          duration = duration + correction
       end do
@@ -104,16 +99,19 @@ contains
       type(panel_t), intent(in) :: other
       type(step_t), intent(in) :: step
 
-      integer :: attempt
+      logical :: fresh
 
-      do attempt = 1, 2
+      ! the Jacobian changes as the square of the duration, or less
+      fresh = abs(step%duration - other%step%duration) > ive_contraction*other%step%duration
+      do
          if (motion%recedes) then
             call guess_rebound(motion, other, step, 0.0_wp, 0.0_wp, .true.)
          else
             call guess_growth(motion, other, step)
          end if
-         call solve_panel(motion, step, attempt == 2)
-         if (motion%panel%converged) return
+         call solve_panel(motion, step, fresh)
+         if (motion%panel%converged .or. fresh) return
+         fresh = .true.
       end do
    end subroutine solve_near
 
@@ -141,7 +139,7 @@ contains
       !> Whether the event is near
       logical, intent(out) :: found
 
-      real(wp) :: fall, kappa
+      real(wp) :: bend(0:width), slope, curvature, kappa
       integer :: n
 
       time = 0.0_wp
@@ -149,14 +147,16 @@ contains
       associate (panel => motion%panel, rule => motion%rule, contact => motion%sums%contact, &
                  law => motion%impact%law)
          if (event == event_close) then
-            fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
-            found = fall > 0.0_wp
-            if (found) time = panel%condition(n)/fall*panel%step%duration
+            ! N is even in the root of the time left, theta = 1 at its zero
+            bend = rule%slopes(rule%slopes(panel%condition))
+            found = bend(n) > 0.0_wp
+            if (found) time = panel%step%duration*time_to_zero(panel%condition(n), &
+               -0.5_wp*bend(n), sum(rule%derivative(n, :)*rule%slopes(bend))/12.0_wp)
          else if (event == event_turn) then
             call motion%find_velocity()
-            fall = -panel%slope_at_end(rule, panel%velocity)
-            found = fall > 0.0_wp
-            if (found) time = panel%velocity(n)/fall
+            call panel%end_rates(rule, panel%velocity, slope, curvature)
+            found = slope < 0.0_wp
+            if (found) time = time_to_zero(panel%velocity(n), slope, curvature)
          else if (size(contact%rates) == 0 .and. .not. contact%viscosity > 0.0_wp) then
             ! elastic: the zero of s is that of F, but where F is s^2 it is lost in rounding
             panel%velocity(n) = motion%velocity_at(n)
@@ -201,6 +201,16 @@ contains
          end associate
       end subroutine look_ahead
    end subroutine time_to_event
+
+   !> Time to the zero of a parabola that falls
+   pure function time_to_zero(value, slope, bend) result(time)
+      !> Its value, and its derivatives by time, slope < 0
+      real(wp), intent(in) :: value, slope, bend
+      !> Time, negative if the zero has passed
+      real(wp) :: time
+
+      time = 2.0_wp*value/(-slope + sqrt(max(0.0_wp, slope**2 - 2.0_wp*value*bend)))
+   end function time_to_zero
 
    !> First stage of a panel without force; 0 if there is none. While the indentation grows, the
    !> force is positive, and a force <= 0 is rounding

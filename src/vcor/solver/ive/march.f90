@@ -20,7 +20,7 @@ module vcor_solver_ive_march
    use vcor_solver_ive_course, only : at_branch, course_t, of_cor, of_cor_sphere, of_time
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_event, only : cut_at_event, event_close, event_end, event_turn, &
-      first_without_force, time_to_event
+      first_without_force, time_to_event, time_to_zero
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
    use vcor_solver_ive_panel, only : step_t
@@ -612,36 +612,16 @@ contains
    subroutine extrapolate(self)
       type(course_t), intent(inout) :: self
 
-      real(wp) :: fall, fall_rate
+      real(wp) :: slope, bend
 
-      associate (panel => self%fine%panel, n => self%fine%panel%stages)
-         call end_rates(panel%t1, self%rate, self%bend)
+      associate (panel => self%fine%panel, rule => self%fine%rule, n => self%fine%panel%stages)
+         call panel%end_rates(rule, panel%t1, self%rate, self%bend)
          ! t1'' decreases along the panel
          self%bend = 0.6_wp*self%bend
-         call end_rates(panel%condition, fall, fall_rate)
-         fall = -fall
+         call panel%end_rates(rule, panel%condition, slope, bend)
          self%rest = huge(1.0_wp)
-         if (fall > 0.0_wp) self%rest = 2.0_wp*panel%condition(n)/(fall &
-            + sqrt(max(0.0_wp, fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
+         if (slope < 0.0_wp) self%rest = time_to_zero(panel%condition(n), slope, bend)
       end associate
-
-   contains
-
-      !> First and second time derivative of a value at the end of the panel
-      subroutine end_rates(value, first, second)
-         !> Values at the points
-         real(wp), intent(in) :: value(0:width)
-         !> First derivative
-         real(wp), intent(out) :: first
-         !> Second derivative
-         real(wp), intent(out) :: second
-
-         associate (panel => self%fine%panel, rule => self%fine%rule)
-            first = panel%slope_at_end(rule, value)
-            second = (panel%slope_at_end(rule, rule%slopes(value)) - 2.0_wp*panel%map(2)*first &
-               /panel%pace(1.0_wp))/panel%pace(1.0_wp)
-         end associate
-      end subroutine end_rates
    end subroutine extrapolate
 
 end module vcor_solver_ive_march

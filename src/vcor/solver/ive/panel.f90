@@ -69,6 +69,7 @@ module vcor_solver_ive_panel
       procedure :: theta
       procedure :: pace
       procedure :: slope_at_end
+      procedure :: end_rates
       procedure :: move_to_end
    end type panel_t
 
@@ -134,6 +135,20 @@ contains
 
       slope = sum(rule%derivative(rule%stages, :)*value)/self%pace(1.0_wp)
    end function slope_at_end
+
+   !> First and second time derivative of a value at the end of a panel, by its polynomial
+   pure subroutine end_rates(self, rule, value, first, second)
+      class(panel_t), intent(in) :: self
+      type(rule_t), intent(in) :: rule
+      !> Values at the points
+      real(wp), intent(in) :: value(0:width)
+      !> Derivatives [1/s, 1/s2]
+      real(wp), intent(out) :: first, second
+
+      first = self%slope_at_end(rule, value)
+      second = (self%slope_at_end(rule, rule%slopes(value)) - 2.0_wp*self%map(2)*first &
+         /self%pace(1.0_wp))/self%pace(1.0_wp)
+   end subroutine end_rates
 
    !> Make the end of the panel the start of the next one, except for the lags
    pure subroutine move_to_end(self, start)
