@@ -63,14 +63,13 @@ module vcor_tuning
    !> Share of the accuracy that a panel may add to the difference of the two solutions: with what
    !> is stated at least (`ive_harmless`) it is half a unit of the last digit asked for
    real(wp), parameter :: ive_share = 0.4_wp
-   !> Duration of the first panel over the expected contact time: with its double, in sqrt(t), and
-   !> one more panel it makes an impact
-   real(wp), parameter :: ive_first = 0.1225_wp
-   !> Accuracy for which lengths are given; they grow with the order of the rule
-   real(wp), parameter :: ive_usual = 1.0e-8_wp
-   !> With a continuous spectrum, accuracy below which the first panel is shorter. With a fifteenth
-   !> of it the largest force misses the accuracy in one of nine impacts, and the march is repeated
-   real(wp), parameter :: ive_continuous = 5.0e-6_wp
+   !> Duration of the first panel over the expected contact time and the power of the tolerance by
+   !> which the rule converges: at the usual accuracy of 1e-8 an eighth of the time. With its
+   !> double, in sqrt(t), and one more panel it makes an impact
+   real(wp), parameter :: ive_first = 0.457_wp
+   !> Impulse of the modes that settle within the first panel, over what a panel may add to the
+   !> difference: it is this many times the error, or more
+   real(wp), parameter :: ive_settling = 100.0_wp
    !> Controller: safety, largest growth and smallest cut of a length
    real(wp), parameter :: ive_safety = 0.9_wp
    real(wp), parameter :: ive_growth = 1.5_wp

@@ -24,9 +24,9 @@ module vcor_solver_ive_march
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
    use vcor_solver_ive_panel, only : step_t
-   use vcor_tuning, only : ive_continuous, ive_cut, ive_ends, ive_first, ive_growth, &
-      ive_leftover, ive_part, ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, &
-      ive_safety, ive_share, ive_tolerable, ive_usual
+   use vcor_tuning, only : ive_cut, ive_ends, ive_first, ive_growth, ive_leftover, ive_part, &
+      ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, ive_safety, ive_settling, &
+      ive_share, ive_tolerable
    implicit none
    private
 
@@ -138,15 +138,25 @@ contains
       self%bridge => bridge
       call start_motion(self%fine, rules(1))
       call start_motion(self%coarse, rules(2))
-      self%length = ive_first*impact%law%contact_time*time_scale &
-         *(self%tolerance/ive_usual)**(1.0_wp/14.0_wp)
-      ! modes that settle within the first panel are not resolved: its impulse, a power of its
-      ! duration, is off by a fixed part of itself
-      if (sums%contact%error > 0.0_wp) &
-         self%length = self%length*min(1.0_wp, self%tolerance/ive_continuous) &
-            **(1.0_wp/(1.0_wp + impact%law%start_exponent))
+      self%length = first_length(self, impact%law%contact_time*time_scale)
+      call resolve_modes()
 
    contains
+
+      !> Shorten the first panel, until those of the modes that settle within it, which it does not
+      !> resolve, matter little. A mode settles at the time 1/l, after an impulse of G u(v/l)/l
+      subroutine resolve_modes()
+
+         real(wp) :: missed(size(sums%contact%rates))
+
+         associate (g => sums%contact%moduli, l => sums%contact%rates)
+            missed = abs(g)*impact%law%u(self%speed/l)/(l*impact%mass*self%speed)
+            do while (sum(missed, l*self%length > real(rules(1)%stages, wp)) &
+                      > ive_settling*self%tolerance)
+               self%length = ive_safety*self%length
+            end do
+         end associate
+      end subroutine resolve_modes
 
       !> Start one of the two solutions
       subroutine start_motion(motion, rule)
@@ -157,10 +167,8 @@ contains
          motion%sums => sums
          motion%rule => rule
          motion%approach => approach
-         ! at least rounding in products with a matrix; next to nothing of a force may decide when a
-         ! contact ends, whatever the accuracy
-         motion%tolerance = max(width**2*epsilon(1.0_wp), &
-            ive_leftover*min(self%tolerance, ive_usual))
+         ! at least rounding in products with a matrix
+         motion%tolerance = max(width**2*epsilon(1.0_wp), ive_leftover*self%tolerance)
          associate (now => motion%start)
             now%alpha = impact%plate%alpha(0.0_wp)
             now%force = impact%first_force()
@@ -171,6 +179,18 @@ contains
          end associate
       end subroutine start_motion
    end subroutine start
+
+   !> Length of the first panel of a motion that lasts for a time; half of it after a largest
+   !> indentation
+   pure function first_length(self, time) result(length)
+      type(course_t), intent(in) :: self
+      !> Time [s]
+      real(wp), intent(in) :: time
+      !> Length [s]
+      real(wp) :: length
+
+      length = ive_first*time*self%tolerance**(1.0_wp/real(2*self%fine%rule%stages - 2, wp))
+   end function first_length
 
    !> Choose the next step
    subroutine choose_step(self)
@@ -199,7 +219,7 @@ contains
             if (.not. self%refused < huge(1.0_wp)) doubled = ive_safety*(2.0_wp + ive_safety)*time
             if (.not. time > 0.0_wp) then
                step%kind = opening
-            else if (step%duration >= doubled .and. (self%fine%sums%contact%error > 0.0_wp &
+            else if (step%duration >= doubled .and. (has_settled(self) &
                      .or. self%fine%impact%law%receding)) then
                step = step_t(doubling, 3.0_wp*time)
             end if
@@ -211,6 +231,18 @@ contains
          if (any(step%kind == [doubling, closing])) step%kind = linear
       end associate
    end subroutine choose_step
+
+   !> Whether modes of a continuous spectrum have settled since first contact: the motion goes on
+   !> in the root of time
+   pure function has_settled(self)
+      type(course_t), intent(in) :: self
+      logical :: has_settled
+
+      associate (contact => self%fine%sums%contact, time => self%fine%start%time)
+         has_settled = contact%error > 0.0_wp &
+            .and. any(contact%rates*time > real(self%fine%rule%stages, wp))
+      end associate
+   end function has_settled
 
    !> Whether the motion after the largest indentation begins with a root of time: the kernel is
    !> infinite at first or has a dashpot
@@ -580,7 +612,7 @@ contains
    subroutine go_on(self)
       type(course_t), intent(inout) :: self
 
-      real(wp) :: finer, factor
+      real(wp) :: factor
 
       associate (fine => self%fine, time => self%fine%start%time)
          factor = min(ive_growth, length_factor(max(self%excess, tiny(1.0_wp)), &
@@ -594,11 +626,10 @@ contains
          if (self%turns) then
             call fine%turn()
             call self%coarse%turn()
-            finer = (self%tolerance/ive_usual)**0.1_wp
             self%previous%stages = 0
             self%rate = -1.2_wp
             self%rest = fine%approach%end
-            self%length = 0.5_wp*finer*fine%approach%end
+            self%length = first_length(self, 4.0_wp*fine%approach%end)
             self%end_length = self%length
             if (is_fast(self)) self%end_length = 0.5_wp*self%length
          else if (fine%recedes) then
