@@ -85,6 +85,7 @@ module vcor_numeric_radau_rule
    contains
       procedure :: basis
       procedure :: interpolate
+      procedure :: interpolate_at
       procedure :: slopes
       procedure :: crossing
    end type rule_t
@@ -241,10 +242,21 @@ contains
       !> f(B)
       real(wp) :: matrix(width, width)
 
-      integer :: j
+      real(wp) :: r(width, 2*slots)
+      integer :: i, j, m
 
+      do m = 1, slots
+         r(:, 2*m - 1) = real(f(m), wp)*self%right(:, 2*m - 1) + aimag(f(m))*self%right(:, 2*m)
+         r(:, 2*m) = real(f(m), wp)*self%right(:, 2*m) - aimag(f(m))*self%right(:, 2*m - 1)
+      end do
       do j = 1, width
-         matrix(:, j) = self%compose(f*pairs(self%left(:, j)))
+         associate (l => self%left(:, j))
+            do i = 1, width
+               matrix(i, j) = (((r(i, 1)*l(1) + r(i, 2)*l(2)) + (r(i, 3)*l(3) + r(i, 4)*l(4))) &
+                  + ((r(i, 5)*l(5) + r(i, 6)*l(6)) + (r(i, 7)*l(7) + r(i, 8)*l(8)))) &
+                  + (r(i, 9)*l(9) + r(i, 10)*l(10))
+            end do
+         end associate
       end do
    end function function_of
 
@@ -368,6 +380,30 @@ contains
 
       y = sum(self%basis(theta)*value)
    end function interpolate
+
+   !> Values of the polynomial through given values at the points, at many arguments
+   pure function interpolate_at(self, value, theta) result(y)
+      class(rule_t), intent(in) :: self
+      !> Values at `point`
+      real(wp), intent(in) :: value(0:width)
+      !> Arguments
+      real(wp), intent(in) :: theta(width)
+      real(wp) :: y(width)
+
+      real(wp) :: before(width, 0:width), after(width)
+      integer :: j
+
+      before(:, 0) = 1.0_wp
+      do j = 1, self%stages
+         before(:, j) = before(:, j - 1)*(theta - self%point(j - 1))
+      end do
+      after = 1.0_wp
+      y = 0.0_wp
+      do j = self%stages, 0, -1
+         y = y + (self%barycentric(j)*value(j))*(before(:, j)*after)
+         after = after*(theta - self%point(j))
+      end do
+   end function interpolate_at
 
    !> Derivative by theta, at the points, of the polynomial through given values there
    pure function slopes(self, value) result(slope)

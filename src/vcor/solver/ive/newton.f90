@@ -162,23 +162,21 @@ contains
       type(panel_t), intent(in) :: previous
       type(step_t), intent(in) :: step
 
-      real(wp) :: elapsed, theta
-      integer :: j
+      real(wp), dimension(width) :: elapsed, theta, parabola
 
       associate (s => motion%panel%indentation, start => motion%start, impact => motion%impact)
-         do j = 1, width
-            elapsed = elapsed_at(motion%rule, step, j)
-            theta = farthest
-            if (previous%stages > 0) theta = previous%theta(start%time + elapsed)
-            if (theta < farthest) then
-               s(j) = motion%rule%interpolate(previous%indentation, theta)
-            else if (start%time > 0.0_wp) then
-               s(j) = start%indentation + elapsed*(start%velocity &
-                  - 0.5_wp*elapsed*start%force/impact%mass)
-            else
-               s(j) = impact%free_path(elapsed)
-            end if
-         end do
+         elapsed = elapsed_at(motion%rule, step)
+         if (start%time > 0.0_wp) then
+            parabola = start%indentation + elapsed*(start%velocity &
+               - 0.5_wp*elapsed*start%force/impact%mass)
+         else
+            parabola = impact%free_path(elapsed)
+         end if
+         s(1:) = parabola
+         if (previous%stages == 0) return
+         theta = previous%theta(start%time + elapsed)
+         s(1:) = merge(motion%rule%interpolate_at(previous%indentation, theta), parabola, &
+            theta < farthest)
       end associate
    end subroutine guess_growth
 
@@ -196,29 +194,28 @@ contains
       ! slowest fall of t1 after the largest indentation, and the share of the approach for which it
       ! holds
       real(wp), parameter :: slowest = 0.5_wp, near = 0.1_wp
-      real(wp) :: elapsed, theta, vertex
-      integer :: j
+      real(wp), dimension(width) :: elapsed, theta
+      real(wp) :: vertex
 
       vertex = motion%approach%end
       associate (t1 => motion%panel%t1, start => motion%start)
-         do j = 1, width
-            elapsed = elapsed_at(motion%rule, step, j)
-            t1(j) = start%t1 + elapsed*(rate + 0.5_wp*bend*elapsed)
-            ! t1 ends as the root of the time left
-            if (ends) t1(j) = start%t1*left(elapsed)*(1.0_wp + (1.0_wp - left(elapsed)) &
-               *(1.0_wp + 2.0_wp*step%duration*rate/start%t1))
-            if (previous%stages > 0) then
-               theta = previous%theta(start%time + elapsed)
-               if (theta <= farthest_t1) t1(j) = motion%rule%interpolate(previous%t1, theta)
-            end if
-            t1(j) = min(t1(j), vertex - slowest*min(start%time + elapsed - vertex, near*vertex))
-         end do
+         elapsed = elapsed_at(motion%rule, step)
+         t1(1:) = start%t1 + elapsed*(rate + 0.5_wp*bend*elapsed)
+         ! t1 ends as the root of the time left
+         if (ends) t1(1:) = start%t1*left(elapsed)*(1.0_wp + (1.0_wp - left(elapsed)) &
+            *(1.0_wp + 2.0_wp*step%duration*rate/start%t1))
+         if (previous%stages > 0) then
+            theta = previous%theta(start%time + elapsed)
+            t1(1:) = merge(motion%rule%interpolate_at(previous%t1, theta), t1(1:), &
+               theta <= farthest_t1)
+         end if
+         t1(1:) = min(t1(1:), vertex - slowest*min(start%time + elapsed - vertex, near*vertex))
       end associate
 
    contains
 
       !> Root of the share of the step that is left
-      pure function left(elapsed)
+      elemental function left(elapsed)
          !> Time since its start [s]
          real(wp), intent(in) :: elapsed
          real(wp) :: left
@@ -227,16 +224,14 @@ contains
       end function left
    end subroutine guess_rebound
 
-   !> Time of a stage since the start of a step [s]
-   pure function elapsed_at(rule, step, stage) result(elapsed)
+   !> Times of the stages since the start of a step [s]
+   pure function elapsed_at(rule, step) result(elapsed)
       type(rule_t), intent(in) :: rule
       type(step_t), intent(in) :: step
-      !> Stage
-      integer, intent(in) :: stage
-      !> Time [s]
-      real(wp) :: elapsed
+      !> Times [s]
+      real(wp) :: elapsed(width)
 
-      associate (map => rule%map(step%kind), theta => rule%point(stage))
+      associate (map => rule%map(step%kind), theta => rule%point(1:))
          elapsed = step%duration*theta*(map%slope + map%bend*theta)
       end associate
    end function elapsed_at
