@@ -47,6 +47,8 @@ module vcor_solver_ive_approach
       type(rule_t), pointer, private :: rule => null()
       !> Its end: time [s] and largest indentation [m]
       real(wp) :: end = 0.0_wp, depth = 0.0_wp
+      !> Condition N there [N/m^0.5], and -s'' [m/s2]
+      real(wp) :: condition = 0.0_wp, bend = 0.0_wp
       !> w_k [m] and p_k [m^1.5] there, shape (modes)
       real(wp), allocatable :: w(:)
       real(wp), allocatable, private :: p(:)
@@ -90,6 +92,7 @@ contains
       self%count = self%count + 1
       self%end = panel%time(n)
       self%depth = panel%indentation(n)
+      self%bend = -panel%slope_at_end(rule, panel%velocity)
       associate (stretch => self%stretch(self%count), map => rule%map(panel%step%kind), &
                  time => panel%step%duration)
          stretch%panel = panel
@@ -149,7 +152,7 @@ contains
          associate (stretch => self%stretch(k))
             call add_modes(contact, elapsed, stretch, stiffness(i), resolved(i), total)
             if (t1(i) > 0.0_wp) then
-               basis = self%rule%basis(stretch%panel%theta(t1(i)))
+               basis = self%rule%basis(stretch%panel%theta(min(t1(i), self%end)))
                s(i) = sum(basis*stretch%panel%indentation)
                rate(i) = stiffness(i)*sum(basis*stretch%panel%velocity)
                condition(i) = sum(basis*total(:points))
@@ -162,7 +165,13 @@ contains
       end do
       call law%evaluate(width, s, u, slope)
       u = s*u
-      where (t1 > 0.0_wp)
+      where (t1 > self%end)
+         ! N beyond its largest value, which only solutions of an iteration have
+         rate = stiffness*self%bend*self%end
+         condition = condition + contact%equilibrium*s
+         force = force + resolved*u + slope*rate*(t1 - self%end)
+         condition = condition + rate*(t1 - self%end)
+      else where (t1 > 0.0_wp)
          condition = condition + contact%equilibrium*s
          force = force + resolved*u
       else where
@@ -212,22 +221,24 @@ contains
       !> Other t1 [s], less than the end
       real(wp) :: other
 
-      ! distance before the end at which no digit of the approach is left; largest share of the
-      ! distance to the vertex that t1 goes towards it
-      real(wp), parameter :: farthest = 1.0_wp/epsilon(1.0_wp), closest = 0.9_wp
-      real(wp) :: way, whole
+      ! distance before the end at which no digit of the approach is left
+      real(wp), parameter :: farthest = 1.0_wp/epsilon(1.0_wp)
+      real(wp) :: way, whole, beyond
 
       way = self%end - t1
-      whole = rate*way
-      if (.not. whole > 0.0_wp) then
-         other = self%end - 2.0_wp*abs(way)
-      else if (2.0_wp*change >= (1.0_wp - (1.0_wp - closest)**2)*whole) then
-         other = t1 + closest*way
+      whole = 0.5_wp*rate*way
+      beyond = change - min(2.0_wp*whole, whole)
+      if (beyond > 0.0_wp) then
+         other = self%end + beyond/merge(rate, rate*self%end/way, way < 0.0_wp)
+      else if (way < 0.0_wp) then
+         other = self%end*(1.0_wp - sqrt(-2.0_wp*beyond/(self%end*rate)))
+      else if (.not. whole > 0.0_wp) then
+         other = self%end - 2.0_wp*way
       else if (.not. t1 > 0.0_wp .or. -change > farthest*whole) then
          other = t1 - farthest*self%end
          if (-change < farthest*self%end*rate) other = t1 + change/rate
       else
-         other = t1 + way*(1.0_wp - sqrt(1.0_wp - 2.0_wp*change/whole))
+         other = t1 + way*(1.0_wp - sqrt(1.0_wp - change/whole))
       end if
    end function moved
 

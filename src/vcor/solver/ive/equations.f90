@@ -48,8 +48,6 @@ module vcor_solver_ive_equations
       !> The approach, for a contact that will recede: that of the better solution, for both, since
       !> polynomials are less accurate between the ends of panels
       type(approach_t), pointer :: approach => null()
-      !> Condition N at the largest indentation [N/m^0.5]
-      real(wp) :: largest_condition = 0.0_wp
    contains
       procedure :: set_up
       procedure :: evaluate
@@ -447,7 +445,7 @@ contains
          start%lag = self%approach%w
          start%t1 = start%time
          start%condition = contact%equilibrium*start%indentation + sum(contact%moduli*start%lag)
-         self%largest_condition = start%condition
+         self%approach%condition = start%condition
       end associate
    end subroutine turn
 

@@ -333,9 +333,6 @@ contains
       !> False if the panel only showed where the contact ends
       logical, intent(out) :: solved
 
-      ! t1 at the end over that at the start of the last panel that counts as zero: N near zero may
-      ! be rounding
-      real(wp), parameter :: near_zero = 0.3_wp
       real(wp) :: theta
       integer :: j
       logical :: found
@@ -346,11 +343,9 @@ contains
          call solve_panel(fine, self%step, .true.)
          if (.not. panel%converged) return
          if (self%ends) then
-            call cut_at_event(fine, event_close, min(self%accuracy, ive_usual), &
-               panel%step%duration, found)
+            call cut_at_event(fine, event_close, self%accuracy, panel%step%duration, found)
             panel%converged = found
-            if (found) panel%converged = abs(panel%t1(panel%stages)) <= near_zero*fine%start%t1
-            if (panel%converged) self%rest = panel%step%duration
+            if (found) self%rest = panel%step%duration
          else
             j = findloc(panel%condition(1:panel%stages) <= 0.0_wp, .true., 1)
             if (j == 0) return

@@ -5,7 +5,7 @@ module vcor_solver_ive_newton
    use vcor_numeric_radau_rule, only : bridge_t, rule_t
    use vcor_solver_ive_equations, only : equations_t, motion_t
    use vcor_solver_ive_panel, only : panel_t, step_t
-   use vcor_tuning, only : ive_contraction, ive_rounding
+   use vcor_tuning, only : ive_contraction
    implicit none
    private
 
@@ -30,7 +30,7 @@ contains
       ! largest u [m^n] or force [N]
       real(wp), parameter :: beyond_all = 1.0e120_wp
       type(equations_t) :: e
-      real(wp) :: change(width), unit, size, last, left, rate, noise
+      real(wp) :: change(width), unit, size, last, left, rate
       logical :: stale, regular
       integer :: iteration
 
@@ -38,7 +38,6 @@ contains
       motion%panel%converged = .false.
       stale = fresh
       last = 0.0_wp
-      noise = merge(ive_rounding, 0.0_wp, motion%recedes)
       do iteration = 1, most_iterations
          call motion%evaluate(e)
          ! a diverging iteration ends before products overflow
@@ -51,7 +50,7 @@ contains
             if (.not. regular) return
          end if
          change = apply(motion%inverse, change)
-         unit = motion%largest_condition
+         unit = motion%approach%condition
          if (.not. motion%recedes) unit = largest(e%x + change)
          if (.not. unit > 0.0_wp) return
          call motion%move(e, change)
@@ -66,8 +65,7 @@ contains
             left = 2.0_wp*size*rate
             stale = rate > ive_contraction .and. (iteration > 1 .or. size > ive_contraction)
          end if
-         motion%panel%converged = left <= motion%tolerance &
-            .or. iteration > 1 .and. size <= noise .and. .not. size < 0.5_wp*last
+         motion%panel%converged = left <= motion%tolerance
          if (motion%panel%converged) exit
          last = max(size, tiny(1.0_wp))
       end do
@@ -118,16 +116,14 @@ contains
          change = e%right - e%x - e%matrix_times(e%f)
          if (e%closes) change(motion%rule%stages) = 0.0_wp
          change = apply(bridge%down(:, 1:), apply(finer%inverse, apply(bridge%up, change)))
-         unit = motion%largest_condition
+         unit = motion%approach%condition
          if (.not. motion%recedes) unit = largest(e%x + change)
          size = largest(change)/max(unit, tiny(1.0_wp))
          ! the guess, or the Jacobian, was useless
-         if (.not. size <= 1.0_wp .or. iteration > 1 .and. size > ive_contraction*last &
-             .and. size > ive_rounding) exit
+         if (.not. size <= 1.0_wp .or. iteration > 1 .and. size > ive_contraction*last) exit
          call motion%move(e, change)
-         motion%panel%converged = iteration > 1 .and. size*size <= motion%tolerance*last &
-            .or. iteration > 1 .and. motion%recedes .and. size <= ive_rounding &
-            .and. .not. size < 0.5_wp*last .or. size <= motion%tolerance
+         motion%panel%converged = size <= motion%tolerance .or. iteration > 1 &
+            .and. size*size <= motion%tolerance*last
          if (motion%panel%converged) exit
          last = max(size, tiny(1.0_wp))
       end do
