@@ -458,11 +458,12 @@ contains
       !> Whether the indentation, otherwise the force
       logical, intent(in) :: of_indentation
       !> Time since the start of the panel [s]
-      real(wp), intent(in) :: time
+      real(wp), intent(inout) :: time
       !> Maximum, and its difference from that of the coarse solution
       real(wp), intent(inout) :: peak, difference
 
       type(panel_t) :: fine, coarse
+      real(wp) :: value(0:width), slope, bend
 
       fine = self%fine%panel
       coarse = self%coarse%panel
@@ -471,6 +472,15 @@ contains
          peak = last_value(self%fine%panel)
          if (.not. of_indentation) call solve_companion(self%coarse, self%fine, self%bridge)
          if (self%coarse%panel%converged) difference = abs(peak - last_value(self%coarse%panel))
+         ! the maximum of the whole panel's polynomial is next to that of the solution
+         value = merge(self%fine%panel%indentation, self%fine%panel%force, of_indentation)
+         if (.not. of_indentation) value(0) = sum(self%fine%rule%start_weight*value(1:))
+         call self%fine%panel%end_rates(self%fine%rule, value, slope, bend)
+         if (bend < 0.0_wp) then
+            time = time - slope/bend
+            peak = peak - 0.5_wp*slope**2/bend
+            difference = difference - 0.5_wp*slope**2/bend
+         end if
       end if
       self%fine%panel = fine
       self%coarse%panel = coarse
