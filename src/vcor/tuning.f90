@@ -85,9 +85,6 @@ module vcor_tuning
    real(wp), parameter :: ive_rounding_of_fall = 7.0e-15_wp
    !> Rounding in forces and conditions of stiff modes and dashpots, relative
    real(wp), parameter :: ive_rounding = 1.0e-9_wp
-   !> Number of times that an end is refused for its errors, which it may not be able to lose: with
-   !> a spring of next to nothing few digits of its time are known at any length of the panel
-   integer, parameter :: ive_ends = 5
    !> Largest share of the way to the end of the contact, a branch point, that a panel takes before
    !> the last one: each is then twice as long as the next
    real(wp), parameter :: ive_part = 0.67_wp

@@ -9,7 +9,7 @@ module vcor_solver_ive_course
    use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
    use vcor_solver_ive_newton, only : solve_companion
    use vcor_solver_ive_panel, only : panel_t, step_t
-   use vcor_tuning, only : ive_harmless, ive_rounding_per_panel, ive_share
+   use vcor_tuning, only : ive_harmless, ive_rounding, ive_rounding_per_panel, ive_share
    implicit none
    private
 
@@ -70,9 +70,7 @@ module vcor_solver_ive_course
       real(wp) :: last_errors(4) = 0.0_wp
       !> `excess` of the end refused before
       real(wp) :: refused_end = huge(1.0_wp)
-      !> Number of ends refused, an end that was found [s], and the time before which it is not
-      !> tried again [s]
-      integer :: refused_ends = 0
+      !> An end that was found [s], and the time before which it is not tried again [s]
       real(wp) :: end_found = 0.0_wp, lead = 0.0_wp
       !> Rebound: time left, and the duration allowed for the last panel [s]
       real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
@@ -235,9 +233,12 @@ contains
       end associate
    end function missed_kick
 
-   !> Find the end of the contact in both solutions
-   subroutine find_ends(self, found)
+   !> Find the end of the contact in both solutions; with that of a coarse one whose force is
+   !> rounding the panel ends
+   subroutine find_ends(self, max_force, found)
       class(course_t), intent(inout) :: self
+      !> Largest force so far [N]
+      real(wp), intent(in) :: max_force
       !> Whether there is one
       logical, intent(out) :: found
 
@@ -245,7 +246,13 @@ contains
 
       event = merge(event_close, event_end, self%fine%recedes)
       call time_to_event(self%fine, event, self%fine_end, found)
-      if (found) call time_to_event(self%coarse, event, self%coarse_end, found)
+      if (.not. found) return
+      call time_to_event(self%coarse, event, self%coarse_end, found)
+      associate (panel => self%coarse%panel)
+         if (found .or. abs(panel%force(panel%stages)) > ive_rounding*max_force) return
+      end associate
+      self%coarse_end = 0.0_wp
+      found = .true.
    end subroutine find_ends
 
    !> Move the last node of the fine solution to the end of the contact, which it almost is

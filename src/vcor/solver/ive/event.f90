@@ -54,8 +54,8 @@ contains
 
       found = .false.
       correction = huge(1.0_wp)
-      allowed = near*sqrt(accuracy)
-      if (event == event_close .and. motion%impact%plate%hereditary()) allowed = near*accuracy
+      allowed = near*accuracy
+      if (event == event_turn) allowed = near*sqrt(accuracy)
       duration = time
       do iteration = 1, most
          last = motion%panel

@@ -24,7 +24,7 @@ module vcor_solver_ive_march
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
    use vcor_solver_ive_panel, only : step_t
-   use vcor_tuning, only : ive_cut, ive_ends, ive_first, ive_growth, ive_leftover, ive_part, &
+   use vcor_tuning, only : ive_cut, ive_first, ive_growth, ive_leftover, ive_part, &
       ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, ive_safety, ive_settling, &
       ive_share, ive_tolerable
    implicit none
@@ -377,10 +377,10 @@ contains
             coarse%velocity(coarse%stages) = self%coarse%velocity_at(coarse%stages)
          end associate
          if (self%ends) then
-            call self%find_ends(found)
+            call self%find_ends(trajectory%max_force, found)
             if (found) then
                error = self%errors(0, trajectory%max_force)
-               if (self%refused_ends < ive_ends) self%excess = max(self%excess, &
+               self%excess = max(self%excess, &
                   maxval(error(of_cor:of_cor_sphere))/self%accuracy, &
                   0.5_wp*error(of_time)/(self%accuracy*fine%panel%time(fine%panel%stages)))
             else
@@ -456,10 +456,7 @@ contains
 
       last = self%refused
       self%refused = self%excess
-      if (self%ends) then
-         self%refused_ends = self%refused_ends + 1
-         self%refused_end = self%excess
-      end if
+      if (self%ends) self%refused_end = self%excess
       duration = self%step%duration
       associate (start => self%fine%start)
          if (self%ends .and. .not. self%fine%recedes) then
