@@ -57,7 +57,7 @@ module vcor_tuning
 
    ! Internal variables
 
-   !> Lowest accuracy used internally: a lower one saves next to nothing, and crude panels could not
+   !> Lowest accuracy used internally: a lower one saves hardly any time, and crude panels could not
    !> be told from wrong ones
    real(wp), parameter :: ive_loosest = 1.0e-6_wp
    !> Share of the accuracy that a panel may add to the difference of the two solutions: with what
@@ -89,7 +89,7 @@ module vcor_tuning
    !> the last one: each is then twice as long as the next
    real(wp), parameter :: ive_part = 0.67_wp
    !> What panels add to the difference may cancel: the sum of the amounts counts, up to this share
-   !> of the accuracy, below which an overestimate misleads nobody
+   !> of the accuracy, below which an overestimate does no harm
    real(wp), parameter :: ive_harmless = 0.1_wp
    !> Rounding per panel, mostly from the eigenvectors of the integration matrices
    real(wp), parameter :: ive_rounding_per_panel = 5.0e-13_wp

@@ -180,22 +180,22 @@ contains
 
       call impact%kernel_exponentials(window, sum_share*accuracy, sums%contact)
       if (.not. sums%contact%error < 1.0_wp) then
-         call raise(error, error_numerical, 'no sum of exponentials stands for the kernel ' &
+         call raise(error, error_numerical, 'no sum of exponentials represents the kernel ' &
             //'of this contact')
          return
       end if
       if (.not. impact%plate%hereditary()) return
       call impact%plate%response(window, sum_share*accuracy, sums%plate)
       if (.not. sums%plate%error < 1.0_wp) call raise(error, error_numerical, 'no sum of ' &
-         //'exponentials stands for what this plate remembers: use another plate.waves')
+         //'exponentials represents the memory of this plate: use another plate.waves')
    end subroutine find_sums
 
-   !> Errors of the results by those of the sums. The sphere feels the error of the sum for the
+   !> Errors of the results by those of the sums. The velocities have the error of the sum for the
    !> contact, or that of the kernel's integral up to the largest force times the share of the
    !> momentum taken by then, if larger: heavy losses may end the loading early in the window. The
    !> velocity of a plate is at most that of the impact, and is off by the error of its memory. An
    !> error of the velocities moves the end of the contact, the more the slower the separation. The
-   !> largest force F = int k u' dx feels the error of the integral: the total variation of u' is
+   !> largest force F = int k u' dx has the error of the integral: the total variation of u' is
    !> some three times u over the time
    pure function errors_of_sums(impact, sums, trajectory) result(errors)
       type(impact_t), intent(in) :: impact
@@ -205,7 +205,7 @@ contains
       real(wp) :: errors(4)
 
       real(wp), parameter :: variation = 3.0_wp
-      real(wp) :: of_kernel, of_integral, of_plate, felt
+      real(wp) :: of_kernel, of_integral, of_plate, of_velocity
       integer :: node
 
       of_kernel = sums%contact%error
@@ -226,10 +226,10 @@ contains
          if (impact%plate%hereditary()) of_plate = max(sums%plate%error, &
             abs(sums%plate%integral(last(col_time))/(impact%plate%alpha(0.0_wp) &
             + impact%plate%memory_integral(last(col_time))) - 1.0_wp))
-         felt = of_kernel + of_plate
-         errors(of_cor:of_cor_sphere) = felt
-         errors(of_time) = felt*last(col_time)*impact%velocity/abs(last(col_velocity))
-         errors(of_force) = (felt + variation*of_integral)*trajectory%max_force
+         of_velocity = of_kernel + of_plate
+         errors(of_cor:of_cor_sphere) = of_velocity
+         errors(of_time) = of_velocity*last(col_time)*impact%velocity/abs(last(col_velocity))
+         errors(of_force) = (of_velocity + variation*of_integral)*trajectory%max_force
       end associate
    end function errors_of_sums
 

@@ -8,7 +8,9 @@
 !>
 !> At a given time dF/dt1 = k(t - t1) u'(t1) and dN/dt1 = k(t - t1) s'(t1), so F is a function of N
 !> with the slope du/ds at s(t1), which is regular where s' is zero. F goes to zero as u(N) when t1
-!> reaches 0, and is continued oddly, as if s = v0 t1 before first contact.
+!> reaches 0, and is continued oddly, as if s = v0 t1 before first contact. The iterations of a
+!> panel may ask for more than the largest N, which is that at the end of the approach. N goes on
+!> from there as a straight line of t1, F as one of N.
 !>
 !> s is a polynomial in a panel, u is not. What is smoother than u is interpolated between the
 !> nodes: of a mode that settles within the panel its lag p_k, of a slow one u - p_k.
@@ -165,8 +167,8 @@ contains
       end do
       call law%evaluate(width, s, u, slope)
       u = s*u
-      where (t1 > self%end)
-         ! N beyond its largest value, which only solutions of an iteration have
+      where (t1 >= self%end)
+         ! with this rate the way back over a parabola with the vertex at the end is known, too
          rate = stiffness*self%bend*self%end
          condition = condition + contact%equilibrium*s
          force = force + resolved*u + slope*rate*(t1 - self%end)
@@ -209,7 +211,8 @@ contains
    end subroutine add_modes
 
    !> The t1 at which the condition has changed by a given amount from a known one: N is about a
-   !> parabola with its vertex at the end of the approach, where s' is zero
+   !> parabola with its vertex at the end of the approach, where s' is zero, and a straight line
+   !> beyond
    pure function moved(self, t1, change, rate) result(other)
       class(approach_t), intent(in) :: self
       !> Known t1 [s]
@@ -218,7 +221,7 @@ contains
       real(wp), intent(in) :: change
       !> dN/dt1 there [N/(m^0.5 s)]
       real(wp), intent(in) :: rate
-      !> Other t1 [s], less than the end
+      !> Other t1 [s]
       real(wp) :: other
 
       ! distance before the end at which no digit of the approach is left
@@ -227,13 +230,15 @@ contains
 
       way = self%end - t1
       whole = 0.5_wp*rate*way
-      beyond = change - min(2.0_wp*whole, whole)
-      if (beyond > 0.0_wp) then
-         other = self%end + beyond/merge(rate, rate*self%end/way, way < 0.0_wp)
-      else if (way < 0.0_wp) then
-         other = self%end*(1.0_wp - sqrt(-2.0_wp*beyond/(self%end*rate)))
+      if (.not. way > 0.0_wp) then
+         beyond = change - rate*way
+         other = self%end + beyond/rate
+         if (beyond < 0.0_wp) &
+            other = self%end*(1.0_wp - sqrt(-2.0_wp*beyond/(self%end*rate)))
       else if (.not. whole > 0.0_wp) then
          other = self%end - 2.0_wp*way
+      else if (change >= whole) then
+         other = self%end + (change - whole)/rate*(way/self%end)
       else if (.not. t1 > 0.0_wp .or. -change > farthest*whole) then
          other = t1 - farthest*self%end
          if (-change < farthest*self%end*rate) other = t1 + change/rate

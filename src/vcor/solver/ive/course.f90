@@ -174,7 +174,7 @@ contains
             rate = max(rate, impact%plate%alpha_rate(fine%time(n), fine%alpha(n)))
          error = (added(fine%impulse, coarse%impulse)*rate &
             + added(fine%indentation, coarse%indentation)/self%time_scale)/self%speed
-         ! what the memory of a plate gets wrong at first contact it forgets
+         ! errors of the memory of a plate at first contact decay
          if (fine%time(0) > 0.0_wp) error = error + added(fine%drift, coarse%drift)/self%speed
          error = max(error, abs(self%fine%work_in_panel() - self%coarse%work_in_panel()) &
             /(0.5_wp*impact%mass*self%speed**2))
@@ -199,8 +199,8 @@ contains
    end function motion_error
 
    !> Velocity that both solutions miss alike after the largest indentation. Modes that are fast
-   !> beside the rebound make a layer of width 1/l there, before which t1 goes back as fast as time
-   !> runs, and after which the relaxed contact gives way: with s' = -a (t - t_m) and the stiffness
+   !> compared with the rebound make a layer of width 1/l there. Within it t1 falls at the rate of
+   !> time, after it the relaxed contact yields: with s' = -a (t - t_m) and the stiffness
    !> K of the slower modes, K (s(t_m) - s(t1)) = a G/l (t - t_m - 1/l). The force u'' (s(t_m) -
    !> s(t1))^2 K/2 has a kink at 1/l, and a polynomial that continues it to t_m misses the impulse
    !> u'' (a G)^2/(6 K l^5). A panel of n stages resolves modes with l dt/dtheta < n (n + 1)
@@ -308,7 +308,7 @@ contains
          ! a kick at rest changes the velocity of a rebound to second order, but its time to first
          error(of_time) = error(of_time) + self%kick*self%speed/max(abs(fine(1)), tiny(1.0_wp)) &
             *panel%time(n)
-         ! the force feels in full what one panel adds
+         ! what one panel adds enters the force in full
          error(of_force) = max(at_branch*self%force_difference, min(self%added*self%speed/v0, &
             ive_share*self%accuracy)*max_force)
       end associate
@@ -383,8 +383,8 @@ contains
       !> Its time since the start of the panel [s]
       real(wp), intent(out) :: time
 
-      ! error of the position in the panel; the maximum feels its square, the pressure at that time
-      ! feels it as it is
+      ! error of the position in the panel; its square enters the maximum, itself the pressure at
+      ! that time
       real(wp), parameter :: position = 1.0e-14_wp
       real(wp) :: smooth(0:width), slopes(0:width), theta, beyond
       integer :: n, j, other

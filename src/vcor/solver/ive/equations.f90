@@ -71,7 +71,7 @@ module vcor_solver_ive_equations
       logical :: closes
       !> Whether the contact recedes, whether alpha varies in the panel, and whether the plate has a
       !> memory
-      logical :: recedes, varies, remembers
+      logical :: recedes, varies, has_memory
       !> Times of the stages since the start [s]
       real(wp) :: elapsed(width)
       !> H and its eigenvalues [s]
@@ -164,8 +164,8 @@ contains
       e%alpha = 0.0_wp
       e%alpha_rate = 0.0_wp
       associate (start => self%start, plate => self%impact%plate)
-         e%remembers = plate%hereditary()
-         if (e%remembers) then
+         e%has_memory = plate%hereditary()
+         if (e%has_memory) then
             e%alpha(:n) = self%sums%plate%viscosity
             call find_response(self%sums%plate, start%plate_lag, e%eigenvalue, e%plate, e%past)
             e%past = e%past*e%map%left_one
@@ -178,7 +178,7 @@ contains
          end if
          e%yield = e%eigenvalue
          if (.not. e%varies) e%yield = e%yield*(e%inverse_mass*e%eigenvalue + e%alpha(1))
-         if (e%remembers) e%yield = e%yield + e%plate*e%eigenvalue**2
+         if (e%has_memory) e%yield = e%yield + e%plate*e%eigenvalue**2
          self%panel%alpha(1:) = e%alpha
       end associate
    end subroutine add_plate
@@ -232,7 +232,7 @@ contains
 
       impulse = apply(self%h, force)
       lost = self%alpha*force + (self%inverse_mass + self%alpha_rate)*impulse
-      if (self%remembers) lost = lost + self%map%compose(self%plate*self%map%decompose(impulse))
+      if (self%has_memory) lost = lost + self%map%compose(self%plate*self%map%decompose(impulse))
    end function lost_velocity
 
    !> M f
@@ -339,7 +339,7 @@ contains
          panel%impulse(1:) = panel%impulse(0) + gained
          panel%second_impulse(1:) = panel%second_impulse(0) + panel%impulse(0)*e%elapsed &
             + apply(e%h, gained)
-         if (e%remembers) panel%drift(1:) = e%map%compose(e%plate*e%map%decompose(gained) + e%past)
+         if (e%has_memory) panel%drift(1:) = e%map%compose(e%plate*e%map%decompose(gained) + e%past)
          if (e%closes) call self%set_end()
       end associate
    end subroutine finish

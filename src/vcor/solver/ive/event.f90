@@ -43,8 +43,8 @@ contains
       ! length over that of the last panel beyond which polynomials are useless; largest correction
       ! of a closing panel
       real(wp), parameter :: farthest = 2.0_wp, longest = 0.4_wp
-      ! correction of a turn over the square root of the accuracy that may be left: the two laws of
-      ! the force differ by the fourth power of the time since then
+      ! correction that may be left, over the accuracy; that of a turn over the square root of it,
+      ! since the two laws of the force differ by the fifth power of the time since then
       real(wp), parameter :: near = 1.0e-2_wp
       ! correction of a time, relative, that may be rounding
       real(wp), parameter :: rounding = 1.0e-7_wp
@@ -72,7 +72,7 @@ contains
          found = abs(correction) <= allowed*duration .or. iteration > 3 &
             .and. abs(correction) <= rounding*(motion%start%time + duration) &
             .and. abs(correction) >= 0.25_wp*abs(last_correction)
-         ! on a plate that goes along, s' may fall slowly
+         ! on a plate that moves with the sphere, s' may fall slowly
          if (event == event_turn) found = found &
             .and. abs(motion%panel%velocity(motion%panel%stages)) <= allowed*motion%impact%velocity
          if (found) return

@@ -8,7 +8,7 @@
 !>
 !> Each panel is solved with eight stages and, as part of another solution of the whole impact, with
 !> seven. What it adds to the difference of the two decides whether it is accepted, and how long the
-!> next one is. Where both are blind alike, `judge` asks in addition.
+!> next one is. What both solutions miss, `judge` adds.
 module vcor_solver_ive_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -539,7 +539,7 @@ contains
 
       if (self%fine%sums%contact%error > self%accuracy) then
          call raise(error, error_numerical, 'the contact seems to grow again before it has ' &
-            //'ended, which may be the error of the sum of exponentials that stands for the ' &
+            //'ended, which may be the error of the sum of exponentials that represents the ' &
             //'material')
          return
       end if
@@ -569,10 +569,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (is_lost(self)) then
-         call raise(error, error_numerical, 'the force of this contact creeps to zero so slowly ' &
-            //'that its end is lost in rounding: next to nothing of the velocity comes back')
+         call raise(error, error_numerical, 'the force of this contact falls to zero so slowly ' &
+            //'that its end is lost in rounding: the sphere keeps almost none of its velocity')
       else
-         call raise(error, error_numerical, 'the internal-variable method does not get to the ' &
+         call raise(error, error_numerical, 'the internal-variable method does not reach the ' &
             //'end of the contact: the accuracy asked for is out of reach')
       end if
    end subroutine raise_no_end

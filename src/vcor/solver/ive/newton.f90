@@ -24,7 +24,7 @@ contains
       !> The solution; `panel` is solved, or not converged
       type(motion_t), intent(inout) :: motion
       type(step_t), intent(in) :: step
-      !> Whether to begin with a Jacobian of its own, and not with the last one
+      !> Whether to begin with the Jacobian of this panel, and not with the last one
       logical, intent(in) :: fresh
 
       ! largest u [m^n] or force [N]
@@ -55,7 +55,7 @@ contains
          if (.not. unit > 0.0_wp) return
          call motion%move(e, change)
          size = largest(change)/unit
-         ! with a Jacobian of its own the error falls as u does at its branch point, or faster
+         ! with the Jacobian of this panel the error falls as u does at its branch point, or faster
          if (stale) then
             left = size*sqrt(size)
             stale = size > ive_contraction
