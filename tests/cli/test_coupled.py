@@ -81,7 +81,7 @@ def text(material, shape, base, poisson_ratio, waves="none", keys=""):
 @pytest.fixture
 def measured(vcor):
     """A table of moduli next to the case."""
-    times = [10 ** (-7 + 0.1 * i) for i in range(80)]
+    times = [10 ** (-7 + 0.05 * i) for i in range(160)]
     rows = (f"{t:.9e},{2e6 + 3e6 / (1 + math.sqrt(t / 1e-3)):.9e}" for t in times)
     vcor.write(
         "\n".join(["time [s],relaxation_modulus [Pa]", *rows]) + "\n", "measured.csv"
