@@ -303,7 +303,9 @@ contains
          least = min((self%added + left)*self%speed/v0, ive_harmless*self%accuracy)
          error(of_cor:of_cor_sphere) = max(factor*abs(fine - coarse)/v0, least) &
             + ive_rounding_per_panel*real(panels, wp)
-         if (self%fine%recedes) factor = at_branch
+         ! the contact ends with the force, or with the branch point of u
+         if (self%fine%recedes .or. any(self%fine%sums%contact%rates*panel%step%duration &
+             > real(n, wp))) factor = at_branch
          error(of_time) = max(factor*abs(self%fine_end - self%coarse_end), least*panel%time(n))
          ! a kick at rest changes the velocity of a rebound to second order, but its time to first
          error(of_time) = error(of_time) + self%kick*self%speed/max(abs(fine(1)), tiny(1.0_wp)) &
