@@ -168,8 +168,9 @@ contains
       call law%evaluate(width, s, u, slope)
       u = s*u
       where (t1 >= self%end)
-         ! with this rate the way back over a parabola with the vertex at the end is known, too
-         rate = stiffness*self%bend*self%end
+         ! with this rate the way back over a parabola with the vertex at the end is known, too; the
+         ! moduli of a fitted sum have both signs
+         rate = abs(stiffness)*self%bend*self%end
          condition = condition + contact%equilibrium*s
          force = force + resolved*u + slope*rate*(t1 - self%end)
          condition = condition + rate*(t1 - self%end)
