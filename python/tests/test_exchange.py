@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -219,6 +220,21 @@ def test_two_beads_without_arithmetic():
     with pytest.raises(vcor.InputError, match="masses > 0"):
         vcor.pair(ACETATE, (1e-3, 1e-3), masses=(0.0, 1e-3))
     assert vcor.pair(ACETATE, 1e-3)["sphere.radius"] == 1e-3
+
+
+def test_a_bead_on_a_bead_without_a_mass_is_told():
+    """The mass of one bead alone is that of an impact on a bead that cannot move."""
+    words = {"surface_radius": 0.002, "material": "nylon", "waves": "none"}
+    nylon = {"name": "nylon", "model": "elastic", "density": 1150.0, "poisson_ratio": 0.4,
+             "modulus": 3e9}  # fmt: skip
+    case = vcor.Case({"impact": {"velocity": 1.0}, "sphere": {"radius": 0.002, "material": "nylon"},
+                      "plate": words, "material": [nylon]})  # fmt: skip
+    with pytest.warns(UserWarning, match=r"cannot move; two free beads need their reduced mass"):
+        vcor.export(case, "lammps", [0.1, 1.0])
+    case["sphere.mass"] = 2e-5
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        vcor.export(case, "lammps", [0.1, 1.0])
 
 
 def test_the_header_says_what_the_default_mechanics_cost():

@@ -111,8 +111,8 @@ module vcor_case_catalogue
       key_t("impact", "temperature", real_key, "Temperature of both bodies; default: that at " &
          //"which their constants hold", "K", positive), &
       key_t("impact", "gravity", real_key, &
-         "Gravity g along the impact, 0 on a pendulum; default: left out, but 9.80665 for " &
-         //"drop_height", "m/s2", not_negative), &
+         "Gravity g along the impact, 0 on a pendulum; default: none; drop_height falls with " &
+         //"9.80665", "m/s2", not_negative), &
       !
       key_t("sphere", "shape", text_key, "Shape of the body", &
          choices="sphere true_sphere cone punch power", default="sphere"), &

@@ -276,6 +276,13 @@ def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.
     first = found.isel(point=0)
     table.attrs["mass"] = float(2 * first.initial_energy / velocity[0] ** 2)
     radius, other = radii_of(case)
+    if other and case["sphere.mass"] is None:
+        warnings.warn(
+            f"{case.name}: the second body is a sphere, and sphere.mass is not given: this bead of "
+            f"{table.attrs['mass']:.6g} kg meets one that cannot move; two free beads need their "
+            "reduced mass, m1 m2/(m1 + m2)",
+            stacklevel=3,
+        )
     table.attrs["radius"] = radius / (1 + radius / other) if other else radius
     judged, cause = found.validity.values, found.validity_cause.values
     parts = [f"good at {(judged == 'good').sum()} of {len(velocity)} velocities"]
