@@ -1,7 +1,7 @@
 !> Tables as text: files of comma-separated values (RFC 4180, but lines end with LF), and plain
 !> values for scripts
 !>
-!>     # vcor 1.0.0
+!>     # vcor 2.0.0
 !>     # title: rubber ball on steel
 !>     # contact_time = 1.3000000000000000e-03 s, contact time t0 of the impact
 !>     # columns:
