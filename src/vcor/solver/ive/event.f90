@@ -6,7 +6,7 @@
 !>
 !>     turn    the rate s' of the indentation
 !>     end     s and M = kappa u - F, where F = kappa u(s) - M is zero; F may end as u(s) does
-!>     close   the condition N, a parabola in the square root of the time left
+!>     close   the condition N, a parabola of the time left
 module vcor_solver_ive_event
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width

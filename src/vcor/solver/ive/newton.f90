@@ -171,8 +171,8 @@ contains
          s(1:) = parabola
          if (previous%stages == 0) return
          theta = previous%theta(start%time + elapsed)
-         s(1:) = merge(motion%rule%interpolate_at(previous%indentation, theta), parabola, &
-            theta < farthest)
+         s(1:) = merge(motion%rule%interpolate_at(previous%indentation, min(theta, farthest)), &
+            parabola, theta < farthest)
       end associate
    end subroutine guess_growth
 
@@ -202,8 +202,8 @@ contains
             *(1.0_wp + 2.0_wp*step%duration*rate/start%t1))
          if (previous%stages > 0) then
             theta = previous%theta(start%time + elapsed)
-            t1(1:) = merge(motion%rule%interpolate_at(previous%t1, theta), t1(1:), &
-               theta <= farthest_t1)
+            t1(1:) = merge(motion%rule%interpolate_at(previous%t1, min(theta, farthest_t1)), &
+               t1(1:), theta <= farthest_t1)
          end if
          t1(1:) = min(t1(1:), vertex - slowest*min(start%time + elapsed - vertex, near*vertex))
       end associate
