@@ -103,11 +103,6 @@ module vcor_tuning
    real(wp), parameter :: direct_most_work = 3.0e9_wp
    !> Error allowed for the largest force, over the accuracy: with 1 runs take a fifth longer
    real(wp), parameter :: direct_force = 10.0_wp
-   !> Steps from t = 0 in which the rate of the drift is no parabola, and over which kernels are
-   !> integrated in parts
+   !> Steps from t = 0 over which kernels are integrated in parts
    integer, parameter :: direct_near = 16
-   !> Error of the rule of a step for alpha' of a frozen plate, over the rise of alpha, above which
-   !> the step does not resolve it
-   real(wp), parameter :: direct_unresolved = 0.1_wp
-
 end module vcor_tuning

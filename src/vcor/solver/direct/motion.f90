@@ -8,15 +8,16 @@
 !>     frozen               U' = int alpha F' dt = alpha F - D,   D = int alpha' F dt
 !>
 !> I and J are parabolas over each step. The memory psi of the hereditary plate is integrated
-!> exactly, like the kernel of the contact. The rate
-!> of D starts as a power of t that depends on kernel and plate, so the first steps have a rule of
-!> their own. A dashpot's impulse is exactly viscosity*u, so its force is not integrated.
+!> exactly, like the kernel of the contact, and so is alpha' of the frozen plate: it may be infinite
+!> at t = 0 or be over within a part of a step, while F is a power of t times a parabola. A dashpot's
+!> impulse is exactly viscosity*u, so its force is not integrated; a frozen plate has none.
 module vcor_solver_direct_motion
+   use vcor_impact_plate, only : plate_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
+   use vcor_numeric_quadrature, only : endpoint_rule, gauss_nodes
    use vcor_solver_convolution, only : convolution_t, lengthen
-   use vcor_solver_direct_weights, only : memory_weights
-   use vcor_tuning, only : direct_near, direct_unresolved
+   use vcor_solver_direct_weights, only : memory_weights, start_force
    implicit none
    private
 
@@ -48,27 +49,20 @@ module vcor_solver_direct_motion
       real(wp), private :: dt = 0.0_wp
       !> Weights of the end of the step, its start and the node before, for integrals over it [s]
       real(wp), private :: rule(3) = 0.0_wp
-      !> The same weights for the drift D [s]
+      !> Weights of the force at the same nodes in the drift D over the step [m/(N s)]
       real(wp), private :: drift_rule(3) = 0.0_wp
       !> Rate alpha' [m/(N s2)]
       real(wp), private :: alpha_rate = 0.0_wp
       !> Integral of the force without a dashpot's [N s], and of the whole impulse [N s2]
       type(integral_t), private :: force, whole
-      !> Integrals for a frozen plate: of alpha F [m], of alpha' F (the drift D) [m/s], of D [m]
+      !> Integrals for a frozen plate: of alpha F [m], of F over alpha (the drift D) [m/s], of D [m]
       type(integral_t), private :: push, drift, lag
       !> Whether the plate is frozen
       logical, private :: frozen = .false.
-      !> Half the rise of alpha over the step if the step does not resolve alpha', otherwise 0
-      !> [m/(N s)]; alpha' at nodes n - 1 and n - 2 [m/(N s2)]
-      real(wp), private :: half_rise = 0.0_wp, rates(2) = 0.0_wp
-      !> Exponent p of the rate of the drift, alpha' F ~ t^p near t = 0
+      !> Exponent p of the force near t = 0, F ~ t^p, for a frozen plate
       real(wp), private :: power = 0.0_wp
-      !> Whether alpha' is finite at t = 0
-      logical, private :: smooth = .false.
       !> Weights W_i of the memory of a hereditary plate
       type(convolution_t), private :: memory
-      !> Force at the last node, with the dashpot's [N]
-      real(wp), private :: last_force = 0.0_wp
       !> Differences from node to node that the memory weights multiply in U and in U': dJ [N s2]
       !> and dI [N s]
       real(wp), allocatable, private :: in_u(:), in_rate(:)
@@ -92,7 +86,8 @@ contains
 
       self%dt = dt
       self%frozen = impact%plate%frozen()
-      if (self%frozen) call find_power(impact, dt, self%power, self%smooth)
+      if (self%frozen) self%power = log(start_force(impact, dt, 2.0_wp) &
+         /start_force(impact, dt, 1.0_wp))/log(2.0_wp)
       if (.not. impact%plate%hereditary()) return
       call self%memory%set(memory_weights(impact%plate, dt, steps))
       call lengthen(self%in_u, 1, steps)
@@ -112,37 +107,30 @@ contains
       ! weights of the end of the step, its start and the node before
       real(wp), parameter :: adams_moulton(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
       real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
-      real(wp) :: response, last_alpha, rise
+      real(wp) :: response
+      logical :: stiff
 
       self%t = self%dt*real(n, wp)
-      last_alpha = self%alpha
-      self%rates = [self%alpha_rate, self%rates(1)]
-      if (n == 1 .and. self%smooth) self%rates(1) = impact%plate%alpha_rate(0.0_wp)
       self%alpha = impact%plate%alpha(self%t)
       self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
       response = self%alpha + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
       ! trapezoids damp at once what decays at the rate 2/dt, and what is faster better than the
       ! rule of Adams and Moulton, which is stable up to 6/dt
-      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > 2.0_wp) &
-         self%rule = self%dt*trapezoid
+      stiff = self%dt*(response*stiffness + viscosity/impact%mass) > 2.0_wp
+      if (n == 1 .or. stiff) self%rule = self%dt*trapezoid
       self%weight = self%rule(1)
       call go_on(self%force, self%rule)
       call go_on(self%whole, self%rule)
       if (.not. self%frozen) return
-      self%drift_rule = self%rule
-      if (n <= direct_near) self%drift_rule = self%dt*power_rule(n, self%power)
-      self%half_rise = 0.0_wp
-      rise = self%alpha - last_alpha
-      if ((n > direct_near .or. self%smooth) .and. abs(rise &
-          - sum(self%rule*[self%alpha_rate, self%rates])) > direct_unresolved*rise) then
-         self%drift_rule = 0.0_wp
-         self%half_rise = 0.5_wp*rise
+      if (n == 1) then
+         self%drift_rule = [first_drift(impact, self%dt), 0.0_wp, 0.0_wp]
+      else
+         self%drift_rule = rule_of_drift(impact%plate, self%dt, n, stiff .or. n == 2, self%power)
       end if
       call go_on(self%push, self%rule)
       call go_on(self%drift, self%drift_rule)
       call go_on(self%lag, self%rule)
-      self%drift%value = self%drift%value + self%half_rise*self%last_force
    end subroutine advance
 
    !> Set the motion at node n as a linear function of the force there
@@ -163,7 +151,7 @@ contains
       if (self%frozen) then
          plate = self%push%value - self%lag%value - weight*self%drift%value
          plate_velocity = -self%drift%value
-         per_force = self%alpha - self%drift_rule(1)*self%alpha_rate - self%half_rise
+         per_force = self%alpha - self%drift_rule(1)
          rate = 0.0_wp
       else
          plate = self%alpha*i
@@ -187,14 +175,14 @@ contains
    end subroutine respond
 
    !> Complete all integrals with the force found at node n
-   pure subroutine accept(self, n, force, dashpot, drag)
+   pure subroutine accept(self, n, force, dashpot)
       class(motion_t), intent(inout) :: self
       !> Node
       integer, intent(in) :: n
       !> Force without a dashpot's [N]
       real(wp), intent(in) :: force
-      !> Impulse of the dashpot [N s] and its force [N]
-      real(wp), intent(in) :: dashpot, drag
+      !> Impulse of the dashpot [N s]
+      real(wp), intent(in) :: dashpot
 
       real(wp) :: impulse
 
@@ -205,13 +193,11 @@ contains
          self%in_u(n) = self%whole%value - self%second_impulse
          self%in_rate(n) = impulse - self%impulse
       end if
-      self%last_force = force + drag
       self%impulse = impulse
       self%second_impulse = self%whole%value
       if (.not. self%frozen) return
       call complete(self%push, self%rule, self%alpha*force)
-      call complete(self%drift, self%drift_rule, self%alpha_rate*force)
-      self%drift%value = self%drift%value + self%half_rise*force
+      call complete(self%drift, self%drift_rule, force)
       call complete(self%lag, self%rule, self%drift%value)
    end subroutine accept
 
@@ -237,72 +223,61 @@ contains
       integral%last = integrand
    end subroutine complete
 
-   !> Exponent p of the drift rate of a frozen plate, alpha' F ~ t^p near t = 0: alpha' can be
-   !> infinite there if the spectrum is continuous, and F = int k u' ~ t^(n-1) int k
-   pure subroutine find_power(impact, dt, power, smooth)
+   !> Weight of F at the end of the first step in int alpha' F over it, from the force soon after
+   !> first contact: a relaxation that is over within a part of the step may have moved the plate
+   pure function first_drift(impact, dt) result(weight)
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Exponent p, from the ratio of values at 2 dt and dt
-      real(wp), intent(out) :: power
-      !> Whether alpha' is finite at t = 0; if so it is left out of p, as dt may not resolve it
-      logical, intent(out) :: smooth
+      !> Weight [m/(N s)]
+      real(wp) :: weight
 
-      ! a time of early*dt resolves alpha'; a ratio of alpha' above `one` counts as 1
-      real(wp), parameter :: early = 1.0e-9_wp, one = 0.9999_wp
+      real(wp), allocatable :: node(:), share(:)
+      integer :: i
 
-      ! before the first point of a table alpha' is 0
-      smooth = ratio_of_rates(early*dt) > one &
-         .or. .not. impact%plate%alpha_rate(early*dt) > 0.0_wp
-      power = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt)
-      if (.not. smooth) power = power*ratio_of_rates(dt)
-      power = impact%law%start_exponent - 1.0_wp + log(max(power, 0.5_wp))/log(2.0_wp)
+      call endpoint_rule(node, share)
+      weight = dt*sum(share*impact%plate%alpha_rate(dt*node) &
+         *[(start_force(impact, dt, node(i)), i=lbound(node, 1), ubound(node, 1))]) &
+         /start_force(impact, dt, 1.0_wp)
+   end function first_drift
 
-   contains
-
-      !> Ratio alpha'(2 t)/alpha'(t)
-      pure real(wp) function ratio_of_rates(t)
-         real(wp), intent(in) :: t
-
-         ratio_of_rates = impact%plate%alpha_rate(2.0_wp*t) &
-            /max(impact%plate%alpha_rate(t), tiny(1.0_wp))
-      end function ratio_of_rates
-   end subroutine find_power
-
-   !> Weights of the end of step n, its start and the node before, for an integral over the step;
-   !> exact for t^power times a constant on step 1, a linear function on step 2, then a parabola
-   pure function power_rule(n, power) result(rule)
-      !> Step, >= 1
+   !> Weights of F at the end of step n, its start and the node before in int alpha' F over the step,
+   !> with F = t^power times the parabola, or the line, through these nodes. By parts it is
+   !> [(alpha - alpha_start) F] - int (alpha - alpha_start) F', also where alpha' is not resolved
+   pure function rule_of_drift(plate, dt, n, linear, power) result(rule)
+      type(plate_t), intent(in) :: plate
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Step, >= 2
       integer, intent(in) :: n
-      !> Exponent of t, > -1
+      !> Whether it is the line
+      logical, intent(in) :: linear
+      !> Exponent of t, >= 0
       real(wp), intent(in) :: power
-      !> Weights, in units of the step
+      !> Weights [m/(N s)]
       real(wp) :: rule(3)
 
-      real(wp) :: moment(0:2), x
-      integer :: k
+      real(wp) :: x(4), share(4), base(3), slope(3), integral(3), start, t
+      integer :: i
 
-      ! moments of (t - n)^k t^power over the step, t in steps: first of t^k t^power, then shifted
-      x = real(n, wp)
-      do k = 0, 2
-         moment(k) = (x**(power + real(k + 1, wp)) - (x - 1.0_wp)**(power + real(k + 1, wp))) &
-            /(power + real(k + 1, wp))
+      call gauss_nodes(x, share)
+      start = plate%alpha(dt*real(n - 1, wp))
+      integral = 0.0_wp
+      do i = 1, size(x)
+         t = real(n - 1, wp) + x(i)
+         if (linear) then
+            base = [x(i), 1.0_wp - x(i), 0.0_wp]
+            slope = [1.0_wp, -1.0_wp, 0.0_wp]
+         else
+            base = [0.5_wp*x(i)*(1.0_wp + x(i)), (1.0_wp - x(i))*(1.0_wp + x(i)), &
+               -0.5_wp*x(i)*(1.0_wp - x(i))]
+            slope = [0.5_wp + x(i), -2.0_wp*x(i), x(i) - 0.5_wp]
+         end if
+         integral = integral &
+            + share(i)*(plate%alpha(dt*t) - start)*t**power*(slope + power*base/t)
       end do
-      moment(2) = moment(2) - 2.0_wp*x*moment(1) + x*x*moment(0)
-      moment(1) = moment(1) - x*moment(0)
-      rule = 0.0_wp
-      select case (n)
-      case (1)
-         rule(1) = moment(0)
-      case (2)
-         rule(1:2) = [moment(0) + moment(1), -moment(1)]
-      case default
-         rule = [moment(0) + 1.5_wp*moment(1) + 0.5_wp*moment(2), -2.0_wp*moment(1) - moment(2), &
-            0.5_wp*(moment(1) + moment(2))]
-         rule(3) = rule(3)/(x - 2.0_wp)**power
-      end select
-      rule(1) = rule(1)/x**power
-      if (n > 1) rule(2) = rule(2)/(x - 1.0_wp)**power
-   end function power_rule
+      rule = -integral/real(max(1, [n, n - 1, n - 2]), wp)**power
+      rule(1) = rule(1) + plate%alpha(dt*real(n, wp)) - start
+   end function rule_of_drift
 
 end module vcor_solver_direct_motion

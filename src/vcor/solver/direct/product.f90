@@ -379,7 +379,7 @@ contains
             call step_with_a_part(run, impact, n, run%viscosity*impact%law%u(last_s &
             + 0.5_wp*run%kernel%dt*last_speed**2/(last_speed - run%speed)))
       end if
-      call run%motion%accept(n, run%force, run%dashpot, drag(run))
+      call run%motion%accept(n, run%force, run%dashpot)
       if (impact%law%receding) call run%receding%accept(n, run%s)
    end subroutine take_step
 

@@ -10,7 +10,7 @@ module vcor_solver_direct_weights
    implicit none
    private
 
-   public :: contact_kernel_t, memory_weights, square_weights
+   public :: contact_kernel_t, memory_weights, square_weights, start_force
 
    !> Number of parts into which the Newton-Cotes rule divides each step near t = 0
    integer, parameter :: parts = ubound(newton_cotes, 1)
@@ -51,6 +51,25 @@ contains
          impact%kernel_mean_integral(dt)/dt, n, weights, self%moment)
       call self%set(weights)
    end subroutine prepare
+
+   !> Force soon after first contact, where s = v0 t and u ~ t^n: n int k(t - x) x^(n-1) dx
+   pure function start_force(impact, dt, steps) result(force)
+      type(impact_t), intent(in) :: impact
+      !> Time step [s], > 0
+      real(wp), intent(in) :: dt
+      !> Time in steps
+      real(wp), intent(in) :: steps
+      !> Force over u at the end of the first step [N/m^1.5]
+      real(wp) :: force
+
+      real(wp), allocatable :: node(:), share(:)
+
+      call endpoint_rule(node, share)
+      associate (exponent => impact%law%start_exponent)
+         force = exponent*steps**exponent &
+            *sum(share*impact%kernel(dt*steps*node)*(1.0_wp - node)**(exponent - 1.0_wp))
+      end associate
+   end function start_force
 
    !> Mean of k(t - x) over the later part in x of the step that t1 lies in, from the mean over the
    !> whole step and the slope between its neighbours
