@@ -70,12 +70,13 @@ contains
       call complete(impact, trajectory, n, theta, node)
    end function end_of_contact
 
-   !> State where a receding contact ends in the step that ends at node n: at t1 = 0, as t1 is a
-   !> smooth function of time. The force, an integral over u' from 0 to t1, goes to zero as t1^n
-   pure function end_of_receding_contact(impact, t1, trajectory, n) result(node)
+   !> State where a receding contact ends in the step that ends at node n: where the condition for t1
+   !> holds with t1 = 0. The force, an integral over u' from 0 to t1, goes to zero as t1^n
+   pure function end_of_receding_contact(impact, condition, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
-      !> t1 at nodes n - 2, n - 1 and n in any unit, negative at node n
-      real(wp), intent(in) :: t1(-1:1)
+      !> Integral of k(t - x) s'(x) over the whole contact at nodes n - 2, n - 1 and n in any unit,
+      !> negative at node n
+      real(wp), intent(in) :: condition(-1:1)
       !> Trajectory, with no force at node n
       type(trajectory_t), intent(in) :: trajectory
       !> First node after the end
@@ -91,7 +92,7 @@ contains
       upper = 1.0_wp
       do iteration = 1, digits(1.0_wp)
          theta = 0.5_wp*(lower + upper)
-         if (parabola(t1, theta) > 0.0_wp) then
+         if (parabola(condition, theta) > 0.0_wp) then
             lower = theta
          else
             upper = theta

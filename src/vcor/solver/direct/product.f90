@@ -277,8 +277,9 @@ contains
             call find_dip(trajectory%state(col_force, n - 2:n), theta, ends)
          if (run%receding%shrinks) then
             ends = run%receding%t1(3) <= 0.0_wp
-            if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
-               trajectory, n)
+            if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, &
+               run%receding%last_condition(run%kernel, run%viscosity, n, &
+               trajectory%state(col_velocity, n - 2:n)), trajectory, n)
          else if (ends) then
             trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, &
                trajectory, n, theta)

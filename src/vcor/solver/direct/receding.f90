@@ -35,8 +35,8 @@ module vcor_solver_direct_receding
       !> The springs, and t1 in units of the time step when the contact began to grow again
       type(springs_t) :: springs
       real(wp), private :: smallest = 0.0_wp
-      !> t1 in units of the time step at the last three nodes, the newest last; negative after the
-      !> end of contact
+      !> t1 in units of the time step at the last three nodes, the newest last; 0 after the end of
+      !> contact
       real(wp) :: t1(3) = 0.0_wp
       !> Force at the newest node, without that of a dashpot [N]
       real(wp) :: force = 0.0_wp
@@ -52,6 +52,7 @@ module vcor_solver_direct_receding
       procedure :: prepare
       procedure :: accept
       procedure :: find_force
+      procedure :: last_condition
    end type receding_t
 
 contains
@@ -171,15 +172,37 @@ contains
       self%step = max(m, 1)
       self%t1(1:2) = self%t1(2:3)
       if (m == 0) then
-         ! continue t1 linearly to negative times, where the condition is about k(t) v0 t1
          self%force = 0.0_wp
-         self%t1(3) = min(0.0_wp, known/(impact%kernel(real(n, wp)*kernel%dt)*self%ds(1)))
+         self%t1(3) = 0.0_wp
       else
          self%force = force
          call find_in_step(self, impact%law, kernel, n, m, du, known, per_force)
       end if
       self%regrows = self%t1(3) > self%t1(2) + rounding
    end subroutine follow_edge
+
+   !> Integral of k(t - x) s'(x) over the whole contact at the last three nodes, at the end of which
+   !> it is zero. It is smooth there, while t1 may fall from far to 0 within a step
+   pure function last_condition(self, kernel, viscosity, n, speed) result(condition)
+      class(receding_t), intent(in) :: self
+      type(contact_kernel_t), intent(in) :: kernel
+      !> Viscosity of the kernel's dashpot [N s/m^1.5]
+      real(wp), intent(in) :: viscosity
+      !> Newest node, the first one after the end
+      integer, intent(in) :: n
+      !> s' at the last three nodes [m/s]
+      real(wp), intent(in) :: speed(3)
+      !> Integral [N/m^0.5]
+      real(wp) :: condition(3)
+
+      integer :: i, node
+
+      do i = 1, 3
+         node = max(1, n - 3 + i)
+         condition(i) = kernel%sum_over(node, 1, node, self%ds) &
+            - kernel%moment(node - 1)*self%ds(1) + viscosity*speed(i)
+      end do
+   end function last_condition
 
    !> Find t1 in step m, and the force, by the Illinois method
    subroutine find_in_step(self, law, kernel, n, m, du, known, per_force)

@@ -111,7 +111,7 @@ contains
       !> Force [N]
       real(wp), intent(out) :: force
       !> Time at which the body first touched the present edge of the contact, in units of the time
-      !> step; negative after the end of contact
+      !> step; 0 after the end of contact
       real(wp), intent(out) :: t1
 
       real(wp) :: stiffness, s, value, slope, change
@@ -133,9 +133,6 @@ contains
       force = stiffness*value
       call self%accept(impact%law, n, s)
       t1 = self%edge(s)
-      ! continue t1 linearly to negative times: phi of the first spring is about k(t) v0 t1
-      if (.not. t1 > 0.0_wp) t1 = min(0.0_wp, stiffness*(s - self%spring(1)%level) &
-         /(impact%kernel(real(n, wp)*kernel%dt)*ds(1)))
    end subroutine find_force
 
    !> Compute the level of each spring at node n
