@@ -386,6 +386,19 @@ def test_a_frozen_plate_that_relaxes_between_stages(vcor):
     assert abs(cor(rough) - cor(fine)) <= min(1e-6, 3 * error(rough))
 
 
+def test_a_frozen_plate_that_relaxes_long_before_the_end_of_a_step(vcor):
+    """No step resolves 4e-8 s of a contact of 0.04 s; the value is that of tests/reference/found.txt."""
+    vcor.write(
+        "&impact velocity = 5.467 /\n&sphere radius = 0.04706, material = 'a' /\n"
+        "&plate half_thickness = 0.0612, material = 'b', waves = 'frozen' /\n&contact pair = 'series' /\n"
+        "&material name = 'a', model = 'elastic', density = 2700.0, modulus = 7e10, poisson_ratio = 0.33 /\n"
+        "&material name = 'b', density = 466.9, poisson_ratio = 0.5, model = 'sls', glassy_modulus = 5.446e6,\n"
+        "beta = 2.436e7, alpha = 2.436e6 /\n"
+    )
+    found = vcor.numbers("case.nml", "--set", "solver.accuracy=1e-8")
+    assert abs(cor(found) - 0.5793233080326444) <= min(1e-8, 3 * error(found))
+
+
 # The errors of the sphere and of the plate cancel in cor at this step, by a random draw
 CANCELLED = """\
 &impact velocity = 1.7199448407360383 /
@@ -416,6 +429,29 @@ def test_errors_that_cancel_by_chance_are_stated(vcor):
     exact = cor(vcor.numbers("case.nml", "--set", "solver.accuracy=1e-7"))
     found = vcor.numbers("case.nml", "--set", "solver.method=direct")
     assert abs(cor(found) - exact) <= error(found)
+
+
+# The plate runs away from the sphere: the edge of the contact goes to the middle within a step
+RUNS_AWAY = """\
+&impact velocity = 0.22335427971983193 /
+&sphere radius = 0.01, material = 'ball' /
+&plate half_thickness = 0.01195824898415853, material = 'plate', waves = 'relaxing' /
+&contact law = 'receding' /
+&material name = 'ball', density = 7800.0, model = 'rigid' /
+&material
+   name = 'plate', density = 1100.0, poisson_ratio = 0.5, model = 'sls', glassy_modulus = 1.5e7
+   alpha = 1.017400304675674e-08, beta = 9749875.656989837
+/
+"""
+
+
+@pytest.mark.parametrize("accuracy", ["1e-5", "1e-6"])
+def test_a_contact_that_ends_within_a_step(vcor, accuracy):
+    vcor.write(RUNS_AWAY)
+    exact = cor(vcor.numbers("case.nml", "--set", "solver.accuracy=1e-10"))
+    words = ["--set", "solver.method=direct", "--set", f"solver.accuracy={accuracy}"]
+    found = vcor.numbers("case.nml", *words)
+    assert abs(cor(found) - exact) <= min(float(accuracy), 3 * error(found))
 
 
 # Elastic, on a half space: cor = 1
