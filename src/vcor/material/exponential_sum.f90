@@ -9,7 +9,7 @@ module vcor_material_exponential_sum
 
    integer :: i_part
    !> Parts of a window up to which the integrals of a sum and of what it stands for are compared
-   real(wp), parameter :: parts(*) = [(0.2_wp*real(i_part, wp), i_part=1, 5)]
+   real(wp), parameter :: parts(*) = [(real(i_part, wp)/3.0_wp, i_part=1, 3)]
 
    !> Relative difference up to which two rates are the same but for rounding
    real(wp), parameter :: same_rate = 1.0e-13_wp
