@@ -456,7 +456,8 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
     """A program with laws of its own, in the order of their misfits."""
     refuse_shapes(case, target)
     found = [fit for fit in fits(case, target, curve) if fit]
-    found.sort(key=lambda one: (round(one[1].misfit, 6), one[1].time_misfit))
+    # laws that fit alike stay in the order of the program, whatever the last digits are
+    found.sort(key=lambda one: (round(one[1].misfit, 6), round(one[1].time_misfit, 4)))
     text, twin, filled = found[whole(law, "law", 1, len(found)) - 1]
     columns = {"e_law": twin.cor, "contact_time_law": twin.time}
     shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})

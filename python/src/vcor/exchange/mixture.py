@@ -357,7 +357,7 @@ def _by_laws(
             choices.append((worst, max(times), k, some, scale, modulus))
     if not choices:
         raise NumericalError(f"{program.name} has no law for all pairs of this mixture")
-    choices.sort(key=lambda one: (round(one[0], 6), one[1]))
+    choices.sort(key=lambda one: (round(one[0], 6), round(one[1], 4)))
     misfit, time_misfit, _, some, scale, modulus = choices[
         whole(law, "law", 1, len(choices)) - 1
     ]  # fmt: skip
