@@ -7,7 +7,7 @@ Each family of impacts is drawn from a seed of its own and solved with the metho
 The error is the distance from the best solution, see `best_of`. The tables go between the markers of
 docs/appendix_accuracy.md, with --only to the screen; --share solves a share of each family. --cases writes the
 impacts that are refused, missed, or whose error is stated too small, as case files with remarks. Takes about
-six minutes on two idle cores. Needs the Python package (PYTHONPATH=python/src and
+a quarter of an hour on two idle cores. Needs the Python package (PYTHONPATH=python/src and
 VCOR_LIBRARY=build/release/libvcor_python.so will do), and what tests/reference/requirements.txt names.
 """
 

@@ -181,8 +181,8 @@ contains
       self%regrows = self%t1(3) > self%t1(2) + rounding
    end subroutine follow_edge
 
-   !> Integral of k(t - x) s'(x) over the whole contact at the last three nodes, at the end of which
-   !> it is zero. It is smooth there, while t1 may fall from far to 0 within a step
+   !> N, the integral of k(t - x) s'(x) over the whole contact, at the last three nodes. The contact
+   !> ends at its zero: it is smooth there, while t1 may fall from far to 0 within a step
    pure function last_condition(self, kernel, viscosity, n, speed) result(condition)
       class(receding_t), intent(in) :: self
       type(contact_kernel_t), intent(in) :: kernel
