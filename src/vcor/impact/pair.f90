@@ -163,8 +163,8 @@ contains
       time = [(1.0_wp/(1.0_wp + rate_at(real(i, wp)/real(sum_samples, wp))), &
          i=sum_samples*last, 0, -1)]
       self%samples = size(time)
-      ! the integral up to the first checked time is set by itself, so what remains of a misfit in the
-      ! force is its first moment: by t^2 in the logarithm of time
+      ! the integral up to the first checked time is set by itself, so what remains of a misfit in
+      ! the force is its first moment: by t^2 in the logarithm of time
       self%weight = min(1.0_wp, time/ends(checked))**2
 
       call graded_rule(ends, node, self%share, self%last)

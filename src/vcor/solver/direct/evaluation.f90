@@ -70,8 +70,8 @@ contains
       call complete(impact, trajectory, n, theta, node)
    end function end_of_contact
 
-   !> State where a receding contact ends in the step that ends at node n: where the condition for t1
-   !> holds with t1 = 0. The force, an integral over u' from 0 to t1, goes to zero as t1^n
+   !> State where a receding contact ends in the step that ends at node n: where the condition for
+   !> t1 holds with t1 = 0. The force, an integral over u' from 0 to t1, goes to zero as t1^n
    pure function end_of_receding_contact(impact, condition, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
       !> Integral of k(t - x) s'(x) over the whole contact at nodes n - 2, n - 1 and n in any unit,

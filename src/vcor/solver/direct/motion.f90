@@ -9,8 +9,9 @@
 !>
 !> I and J are parabolas over each step. The memory psi of the hereditary plate is integrated
 !> exactly, like the kernel of the contact, and so is alpha' of the frozen plate: it may be infinite
-!> at t = 0 or be over within a part of a step, while F is a power of t times a parabola. A dashpot's
-!> impulse is exactly viscosity*u, so its force is not integrated; a frozen plate has none.
+!> at t = 0 or be over within a part of a step, while F is a power of t times a parabola. A
+!> dashpot's impulse is exactly viscosity*u, so its force is not integrated; beside a frozen plate
+!> there is none.
 module vcor_solver_direct_motion
    use vcor_impact_plate, only : plate_t
    use vcor_impact_problem, only : impact_t
@@ -241,8 +242,8 @@ contains
          /start_force(impact, dt, 1.0_wp)
    end function first_drift
 
-   !> Weights of F at the end of step n, its start and the node before in int alpha' F over the step,
-   !> with F = t^power times the parabola, or the line, through these nodes. By parts it is
+   !> Weights of F at the end of step n, its start and the node before in int alpha' F over the
+   !> step, with F = t^power times the parabola, or the line, through these nodes. By parts it is
    !> [(alpha - alpha_start) F] - int (alpha - alpha_start) F', also where alpha' is not resolved
    pure function rule_of_drift(plate, dt, n, linear, power) result(rule)
       type(plate_t), intent(in) :: plate
