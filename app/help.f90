@@ -27,7 +27,7 @@ module vcor_app_help
    integer, parameter :: margin = 30
    !> Items on the screen of a run that are not columns: their words, between blanks, and meanings
    character(len=*), parameter :: screen_words(*) = [character(len=40) :: &
-      " KE_1 ", " exponentials kernel ", " +- "]
+      " KE_1 ", " exponentials kernel ", " +- ", " good caution outside "]
    character(len=*), parameter :: screen_meanings(size(screen_words)) = [character(len=480) :: &
       "left to the sphere: its kinetic energy after the impact, KE_0 cor_sphere^2 [J]", &
       "'kernel as a sum of 35 exponentials, to 6.0E-10': method ive writes a relaxation modulus " &
@@ -36,7 +36,10 @@ module vcor_app_help
       //"the largest relative error of its integral over the contact time; cor_error includes it. "&
       //"A Prony series is such a sum already, so nothing is printed.", &
       "estimated numerical error of the number before it: cor_error or cor_sphere_error. It says " &
-      //"nothing about the model or the material data."]
+      //"nothing about the model or the material data.", &
+      "levels of validity, of which the worst counts. caution: some numbers are off by a few per " &
+      //"cent; outside: the model is that of a different impact. Each line has the measure, its " &
+      //"value, what is off and what to do; vcor help MEASURE says what is measured."]
 
 contains
 

@@ -39,6 +39,11 @@ module vcor_words
       synonym_t('tan_d', 'loss_tangent'), &
       synonym_t('loss_factor', 'loss_tangent'), &
       synonym_t('restitution', 'cor_sphere'), &
+      synonym_t('e', 'cor'), &
+      synonym_t('e_a', 'cor_sphere'), &
+      synonym_t('t0', 'contact_time'), &
+      synonym_t('f_max', 'max_force'), &
+      synonym_t('s_max', 'max_indentation'), &
       synonym_t('rebound', 'resilience'), &
       synonym_t('rebound_resilience', 'resilience'), &
       synonym_t('peak_force', 'max_force'), &

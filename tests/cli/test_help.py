@@ -179,5 +179,7 @@ def test_words_of_the_screen(vcor):
     """Words of the screen that are not columns."""
     assert "left to the sphere" in vcor.succeeds("help", "KE_1")
     assert "numerical error" in vcor.succeeds("help", "+-")
+    for word in ("good", "caution", "outside"):
+        assert "levels of validity" in vcor.succeeds("help", word)
     for word in ("exponentials", "kernel"):
         assert "solver.accuracy" in vcor.succeeds("help", word)

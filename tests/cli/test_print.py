@@ -102,6 +102,8 @@ def test_plain_numbers(sls):
         ("COR", "cor"),
         ("step", "steps"),
         ("tan_delta", "loss_tangent"),
+        ("e", "cor"),
+        ("t0", "contact_time"),
         ("Rebound", "resilience"),
         ("penetration", "max_indentation"),
     ],
