@@ -105,4 +105,5 @@ module vcor_tuning
    real(wp), parameter :: direct_force = 10.0_wp
    !> Steps from t = 0 over which kernels are integrated in parts
    integer, parameter :: direct_near = 16
+
 end module vcor_tuning

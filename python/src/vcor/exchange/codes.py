@@ -437,6 +437,11 @@ def refuse_shapes(case: Case, target: Target) -> None:
                          "expected table or rebound in its place")  # fmt: skip
 
 
+def rank(misfit: float, time_misfit: float) -> tuple[float, float]:
+    """Place of a law: those that fit alike to these digits stay in the order of the program."""
+    return round(misfit, 6), round(time_misfit, 4)
+
+
 def fits(case: Case, target: Target, curve: xr.Dataset) -> list[Fit | None]:
     """Text, parameters and numbers of each law of a program; None for those that it cannot take."""
     velocity, time = curve.velocity.values, curve.contact_time.values
@@ -456,8 +461,7 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
     """A program with laws of its own, in the order of their misfits."""
     refuse_shapes(case, target)
     found = [fit for fit in fits(case, target, curve) if fit]
-    # laws that fit alike stay in the order of the program, whatever the last digits are
-    found.sort(key=lambda one: (round(one[1].misfit, 6), round(one[1].time_misfit, 4)))
+    found.sort(key=lambda one: rank(one[1].misfit, one[1].time_misfit))
     text, twin, filled = found[whole(law, "law", 1, len(found)) - 1]
     columns = {"e_law": twin.cor, "contact_time_law": twin.time}
     shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})

@@ -40,6 +40,7 @@ from .codes import (
     not_judged,
     pair_of,
     radii_of,
+    rank,
     refuse_shapes,
     rows_of,
     solved,
@@ -357,7 +358,7 @@ def _by_laws(
             choices.append((worst, max(times), k, some, scale, modulus))
     if not choices:
         raise NumericalError(f"{program.name} has no law for all pairs of this mixture")
-    choices.sort(key=lambda one: (round(one[0], 6), round(one[1], 4)))
+    choices.sort(key=lambda one: rank(one[0], one[1]))
     misfit, time_misfit, _, some, scale, modulus = choices[
         whole(law, "law", 1, len(choices)) - 1
     ]  # fmt: skip

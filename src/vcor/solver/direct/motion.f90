@@ -52,7 +52,7 @@ module vcor_solver_direct_motion
       real(wp), private :: rule(3) = 0.0_wp
       !> Weights of the force at the same nodes in the drift D over the step [m/(N s)]
       real(wp), private :: drift_rule(3) = 0.0_wp
-      !> Rate alpha' [m/(N s2)]
+      !> Rate alpha' [m/(N s2)], 0 for a frozen plate
       real(wp), private :: alpha_rate = 0.0_wp
       !> Integral of the force without a dashpot's [N s], and of the whole impulse [N s2]
       type(integral_t), private :: force, whole
@@ -60,8 +60,9 @@ module vcor_solver_direct_motion
       type(integral_t), private :: push, drift, lag
       !> Whether the plate is frozen
       logical, private :: frozen = .false.
-      !> Exponent p of the force near t = 0, F ~ t^p, for a frozen plate
-      real(wp), private :: power = 0.0_wp
+      !> For a frozen plate, exponent p of the force near t = 0, F ~ t^p, and nodes and weights of
+      !> Gauss on a step
+      real(wp), private :: power = 0.0_wp, node(4) = 0.0_wp, share(4) = 0.0_wp
       !> Weights W_i of the memory of a hereditary plate
       type(convolution_t), private :: memory
       !> Differences from node to node that the memory weights multiply in U and in U': dJ [N s2]
@@ -85,10 +86,15 @@ contains
       !> Number of steps
       integer, intent(in) :: steps
 
+      real(wp) :: force(2)
+
       self%dt = dt
       self%frozen = impact%plate%frozen()
-      if (self%frozen) self%power = log(start_force(impact, dt, 2.0_wp) &
-         /start_force(impact, dt, 1.0_wp))/log(2.0_wp)
+      if (self%frozen) then
+         force = start_force(impact, dt, [1.0_wp, 2.0_wp])
+         self%power = log(force(2)/force(1))/log(2.0_wp)
+         call gauss_nodes(self%node, self%share)
+      end if
       if (.not. impact%plate%hereditary()) return
       call self%memory%set(memory_weights(impact%plate, dt, steps))
       call lengthen(self%in_u, 1, steps)
@@ -108,12 +114,13 @@ contains
       ! weights of the end of the step, its start and the node before
       real(wp), parameter :: adams_moulton(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
       real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
-      real(wp) :: response
+      real(wp) :: response, last_alpha
       logical :: stiff
 
       self%t = self%dt*real(n, wp)
+      last_alpha = self%alpha
       self%alpha = impact%plate%alpha(self%t)
-      self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
+      if (.not. self%frozen) self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
       response = self%alpha + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
       ! trapezoids damp at once what decays at the rate 2/dt, and what is faster better than the
@@ -127,7 +134,7 @@ contains
       if (n == 1) then
          self%drift_rule = [first_drift(impact, self%dt), 0.0_wp, 0.0_wp]
       else
-         self%drift_rule = rule_of_drift(impact%plate, self%dt, n, stiff .or. n == 2, self%power)
+         self%drift_rule = rule_of_drift(self, impact%plate, n, last_alpha, stiff .or. n == 2)
       end if
       call go_on(self%push, self%rule)
       call go_on(self%drift, self%drift_rule)
@@ -143,7 +150,7 @@ contains
       !> Known part of a dashpot's impulse [N s]
       real(wp), intent(in) :: dashpot
 
-      real(wp) :: i, j, weight, rate, plate, plate_velocity, per_force
+      real(wp) :: i, j, weight, plate, plate_velocity, per_force
 
       ! I and J without this node's force
       weight = self%weight
@@ -153,17 +160,15 @@ contains
          plate = self%push%value - self%lag%value - weight*self%drift%value
          plate_velocity = -self%drift%value
          per_force = self%alpha - self%drift_rule(1)
-         rate = 0.0_wp
       else
          plate = self%alpha*i
          plate_velocity = self%alpha_rate*i
          per_force = self%alpha
-         rate = self%alpha_rate
       end if
       self%indentation(1) = impact%free_path(self%t) - j/impact%mass - plate
       self%indentation(2) = weight*(weight/impact%mass + per_force)
       self%velocity(1) = impact%free_velocity(self%t) - i/impact%mass - plate_velocity
-      self%velocity(2) = weight/impact%mass + per_force + weight*rate
+      self%velocity(2) = weight/impact%mass + per_force + weight*self%alpha_rate
       if (self%memory%room == 0) return
       self%indentation(1) = self%indentation(1) &
          - self%memory%sum_over(n, 1, n - 1, self%in_u)
@@ -234,51 +239,48 @@ contains
       real(wp) :: weight
 
       real(wp), allocatable :: node(:), share(:)
-      integer :: i
 
       call endpoint_rule(node, share)
-      weight = dt*sum(share*impact%plate%alpha_rate(dt*node) &
-         *[(start_force(impact, dt, node(i)), i=lbound(node, 1), ubound(node, 1))]) &
-         /start_force(impact, dt, 1.0_wp)
+      weight = dt*sum(share*impact%plate%alpha_rate(dt*node)*start_force(impact, dt, node)) &
+         /sum(start_force(impact, dt, [1.0_wp]))
    end function first_drift
 
    !> Weights of F at the end of step n, its start and the node before in int alpha' F over the
    !> step, with F = t^power times the parabola, or the line, through these nodes. By parts it is
    !> [(alpha - alpha_start) F] - int (alpha - alpha_start) F', also where alpha' is not resolved
-   pure function rule_of_drift(plate, dt, n, linear, power) result(rule)
+   pure function rule_of_drift(self, plate, n, start, linear) result(rule)
+      !> The motion, with alpha at the end of the step
+      type(motion_t), intent(in) :: self
       type(plate_t), intent(in) :: plate
-      !> Time step [s]
-      real(wp), intent(in) :: dt
       !> Step, >= 2
       integer, intent(in) :: n
+      !> alpha at its start [m/(N s)]
+      real(wp), intent(in) :: start
       !> Whether it is the line
       logical, intent(in) :: linear
-      !> Exponent of t, >= 0
-      real(wp), intent(in) :: power
       !> Weights [m/(N s)]
       real(wp) :: rule(3)
 
-      real(wp) :: x(4), share(4), base(3), slope(3), integral(3), start, t
+      real(wp) :: base(3), slope(3), integral(3), t
       integer :: i
 
-      call gauss_nodes(x, share)
-      start = plate%alpha(dt*real(n - 1, wp))
       integral = 0.0_wp
-      do i = 1, size(x)
-         t = real(n - 1, wp) + x(i)
-         if (linear) then
-            base = [x(i), 1.0_wp - x(i), 0.0_wp]
-            slope = [1.0_wp, -1.0_wp, 0.0_wp]
-         else
-            base = [0.5_wp*x(i)*(1.0_wp + x(i)), (1.0_wp - x(i))*(1.0_wp + x(i)), &
-               -0.5_wp*x(i)*(1.0_wp - x(i))]
-            slope = [0.5_wp + x(i), -2.0_wp*x(i), x(i) - 0.5_wp]
-         end if
-         integral = integral &
-            + share(i)*(plate%alpha(dt*t) - start)*t**power*(slope + power*base/t)
+      do i = 1, size(self%node)
+         associate (x => self%node(i))
+            t = real(n - 1, wp) + x
+            if (linear) then
+               base = [x, 1.0_wp - x, 0.0_wp]
+               slope = [1.0_wp, -1.0_wp, 0.0_wp]
+            else
+               base = [0.5_wp*x*(1.0_wp + x), (1.0_wp - x)*(1.0_wp + x), -0.5_wp*x*(1.0_wp - x)]
+               slope = [0.5_wp + x, -2.0_wp*x, x - 0.5_wp]
+            end if
+         end associate
+         integral = integral + self%share(i)*(plate%alpha(self%dt*t) - start)*t**self%power &
+            *(slope + self%power*base/t)
       end do
-      rule = -integral/real(max(1, [n, n - 1, n - 2]), wp)**power
-      rule(1) = rule(1) + plate%alpha(dt*real(n, wp)) - start
+      rule = -integral/real(max(1, [n, n - 1, n - 2]), wp)**self%power
+      rule(1) = rule(1) + (self%alpha - start)
    end function rule_of_drift
 
 end module vcor_solver_direct_motion

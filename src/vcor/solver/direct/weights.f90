@@ -57,17 +57,20 @@ contains
       type(impact_t), intent(in) :: impact
       !> Time step [s], > 0
       real(wp), intent(in) :: dt
-      !> Time in steps
-      real(wp), intent(in) :: steps
-      !> Force over u at the end of the first step [N/m^1.5]
-      real(wp) :: force
+      !> Times in steps, shape (n)
+      real(wp), intent(in) :: steps(:)
+      !> Force over u at the end of the first step [N/m^1.5], shape (n)
+      real(wp) :: force(size(steps))
 
       real(wp), allocatable :: node(:), share(:)
+      integer :: i
 
       call endpoint_rule(node, share)
       associate (exponent => impact%law%start_exponent)
-         force = exponent*steps**exponent &
-            *sum(share*impact%kernel(dt*steps*node)*(1.0_wp - node)**(exponent - 1.0_wp))
+         share = share*exponent*(1.0_wp - node)**(exponent - 1.0_wp)
+         do i = 1, size(steps)
+            force(i) = steps(i)**exponent*sum(share*impact%kernel(dt*steps(i)*node))
+         end do
       end associate
    end function start_force
 
