@@ -91,6 +91,10 @@ module vcor_case_problem
       integer, private :: waves = waves_relaxing
       !> Whether the plate has waves as it is, of any thickness
       logical, private :: has_body = .false.
+      !> Whether the surface was that of a second sphere when `mechanics` chose the waves
+      logical, private :: is_pair = .false.
+      !> Whether `mechanics` chose the waves
+      logical, private :: is_chosen = .false.
       !> One of the `pair_*` constants
       integer, private :: pair = pair_eq1
       !> Whether the Volterra series has its second term
@@ -262,6 +266,10 @@ contains
       call self%reading%get(case, 'plate', 'waves', text)
       self%waves = waves(findloc(wave_names == text, .true., dim=1))
       self%has_body = has_body(case)
+      self%is_pair = case%has_second_sphere()
+      call case%get('contact', 'mechanics', text)
+      self%is_chosen = text == 'exact' .and. .not. case%given('plate', 'waves')
+      call case%get('plate', 'waves', text)
       if (text == 'none') then
          call self%reading%leave(self%at%extent, &
             "with plate.waves = 'none' the plate does not move")
@@ -551,6 +559,13 @@ contains
       surface_radius = self%reading%number(case, self%at%surface_radius)
       factor = 0.0_wp
       exponent = law%start_exponent
+      ! a sweep may pass from a second sphere to a seat
+      if (self%is_chosen .and. (surface_radius > 0.0_wp .neqv. self%is_pair)) then
+         call raise(error, error_input, "mechanics = 'exact' leaves waves = 'none' with a second " &
+            //"sphere, and solves them in a flat or concave surface: expected one sign, or " &
+            //'plate.waves', about='surface_radius')
+         return
+      end if
       if (abs(surface_radius) > 0.0_wp) then
          if (self%shape /= 'sphere') call raise(error, error_input, "only shape = 'sphere' meets " &
             //'a curved surface', about='surface_radius shape')
