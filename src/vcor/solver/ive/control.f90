@@ -41,16 +41,19 @@ contains
    !>
    !> within: it adds no more than a panel may. A NaN is not within
    !>
-   !> stalled: the panel before, longer and refused at the same place, added less than twice as much,
-   !>    where the order of the rule makes it thousands of times as much. What is left is inherited
-   !>    from earlier panels, or rounding, and no length removes it. Without this condition panels
-   !>    shrink until their number is exhausted. Not at first contact, where nothing is inherited;
-   !>    not above `ive_tolerable`, since a force that jumps between two nodes stalls as well
+   !> stalled: the panel before, longer and refused at the same place, added less than twice as
+   !>    much, where the order of the rule makes it thousands of times as much. What is left is
+   !>    inherited from earlier panels, or rounding, and no length removes it. Without this condition
+   !>    an impact of a fractional material takes 52 panels in place of 34 at 1e-10. Not at first
+   !>    contact, where nothing is inherited; not above `ive_tolerable`, since a force that jumps
+   !>    between two nodes stalls as well
    !>
    !> settled_end: the same for the panel that ends the contact, if only the time of the end is in
    !>    excess and the motion is within the tolerance. The time at which a force falls to zero
    !>    with hardly a slope is known to rounding over that slope, which may be any multiple of the
-   !>    accuracy: no bound applies. A panel without an end (huge) is refused all the same
+   !>    accuracy: no bound applies. It concerns nearly fluid plates and springs of next to nothing,
+   !>    which have no result at fine accuracies without it, and none of 630 usual impacts. A panel
+   !>    without an end (huge) is refused all the same
    elemental function is_refused(self, ends, at_first_contact) result(refused)
       class(control_t), intent(in) :: self
       !> Whether the panel ends the contact
@@ -79,7 +82,8 @@ contains
    !>
    !> Elsewhere the order of the rule decides, unless two refusals at this place tell a lower one:
    !> where a mode settles within the panel the order is about 1. With the full order such panels
-   !> would be shortened by a few per cent at a time, each for the price of two solutions.
+   !> are shortened by a few per cent at a time, each for the price of two solutions: the impact
+   !> above takes 60 panels in place of 34.
    pure subroutine shorten(self, duration, stages, ends, start, recedes, start_exponent)
       class(control_t), intent(inout) :: self
       !> Duration of the panel, which is after an event the time to it [s]
