@@ -43,10 +43,10 @@ contains
    !>
    !> stalled: the panel before, longer and refused at the same place, added less than twice as
    !>    much, where the order of the rule makes it thousands of times as much. What is left is
-   !>    inherited from earlier panels, or rounding, and no length removes it. Without this condition
-   !>    an impact of a fractional material takes 52 panels in place of 34 at 1e-10. Not at first
-   !>    contact, where nothing is inherited; not above `ive_tolerable`, since a force that jumps
-   !>    between two nodes stalls as well
+   !>    inherited from earlier panels, or rounding, and no length removes it. Without it an impact
+   !>    of a fractional material takes 52 panels in place of 34 at 1e-10. Not at first contact,
+   !>    where nothing is inherited; not above `ive_tolerable`, since a force that jumps between two
+   !>    nodes stalls as well
    !>
    !> settled_end: the same for the panel that ends the contact, if only the time of the end is in
    !>    excess and the motion is within the tolerance. The time at which a force falls to zero
