@@ -50,7 +50,7 @@ contains
       type(sweep_t), intent(in) :: sweep
 
       character(len=note_length), allocatable :: notes(:)
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: name, mechanics
       real(wp) :: temperature
       integer :: i
 
@@ -64,6 +64,10 @@ contains
          //': the second body is a sphere, and mass is not given: the mass is that of &sphere ' &
          //'alone, '//short(sweep%problem%impact%mass)//' kg, as if the second one could not ' &
          //'move; two free spheres need their reduced mass, m1 m2/(m1 + m2)'
+      call case%get('contact', 'mechanics', mechanics)
+      if (mechanics == 'exact' .and. case%has_second_sphere() .and. .not. case%given('plate', 'waves')) &
+         write (error_unit, '(a)') 'vcor: note: '//case%location('contact', 'mechanics') &
+         //": two spheres are no half space: mechanics = 'exact' leaves plate.waves = 'none'"
       if (case%given('impact', 'temperature') .or. any(swept_addresses(case) &
          == case%address('impact', 'temperature'))) return
       do i = 1, case%count('material')
@@ -122,7 +126,8 @@ contains
       is_shown = .false.
       if (waves == 'body' .and. outcome%is_coupled()) return
       exact = model_t(waves, 'receding', 'series')
-      if (waves /= 'none' .or. case%given('plate', 'half_thickness')) exact%waves = 'body'
+      if ((waves /= 'none' .or. case%has_thickness()) .and. .not. case%has_second_sphere()) &
+         exact%waves = 'body'
       call solve_model(case, exact, is_valid)
       is_shown = allocated(exact%failure)
       if (.not. is_shown) is_shown = differ(outcome, exact%outcome)

@@ -20,8 +20,8 @@ module vcor_solver
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy, settle
 
-   !> The method `auto`: the one that the table of `vcor_solver_features` gives for the impact; where
-   !> that is internal variables, also product integration if they fail. They fail if no sum of
+   !> The method `auto`: that which the table of `vcor_solver_features` gives for the impact; where
+   !> it is internal variables, also product integration if they fail. They fail if no sum of
    !> exponentials represents the kernel: for a table whose data begin long after the end of the
    !> contact, for some pairs, and for exponents near a limit; and if a receding contact grows again
    type, extends(solver_t) :: auto_t

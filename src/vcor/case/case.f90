@@ -84,6 +84,7 @@ module vcor_case_case
    contains
       procedure :: start, add, adopt, is_materials, source_of, latest_change, model, find_material
       procedure :: material_of, address, path, row, number, given, unset, oust, refuse
+      procedure :: has_thickness, has_second_sphere
       procedure :: count => count_items
       procedure :: line => line_of_item
       procedure :: entry => entry_at
@@ -523,13 +524,30 @@ contains
       call note_change(self, address, entry%given)
       if (address == self%address('contact', 'mechanics') &
           .or. address == self%address('plate', 'base') &
+          .or. address == self%address('plate', 'surface_radius') &
           .or. address == self%address('plate', 'waves') &
           .or. address == self%address('solver', 'method')) call choose_mechanics(self)
    end subroutine set_entry
 
+   !> Whether the plate has a thickness, under either of its names
+   pure function has_thickness(self) result(has)
+      class(case_t), intent(in) :: self
+      logical :: has
+
+      has = self%given('plate', 'half_thickness') .or. self%given('plate', 'thickness')
+   end function has_thickness
+
+   !> Whether the struck surface is that of a second sphere, which is no half space for waves
+   pure function has_second_sphere(self) result(has)
+      class(case_t), intent(in) :: self
+      logical :: has
+
+      has = self%number(self%address('plate', 'surface_radius')) > 0.0_wp
+   end function has_second_sphere
+
    !> Set the keys of the mechanics that the user has not given: by `mechanics` waves, law and pair;
-   !> without it a plate on a base has no waves; law and pair are also those of the coupled contact
-   !> where that is solved
+   !> without it a plate on a base has no waves, and with it a second sphere has none either; law and
+   !> pair are also those of the coupled contact where that is solved
    pure subroutine choose_mechanics(self)
       type(case_t), intent(inout) :: self
 
@@ -540,7 +558,8 @@ contains
       call self%get('plate', 'base', base)
       call self%get('solver', 'method', method)
       is_exact = mechanics == 'exact'
-      call choose(self, 'plate', 'waves', trim(merge('body', 'none', is_exact)), &
+      call choose(self, 'plate', 'waves', &
+         trim(merge('body', 'none', is_exact .and. .not. self%has_second_sphere())), &
          is_exact .or. base /= 'free')
       call self%get('plate', 'waves', waves)
       is_exact = is_exact .or. waves == 'body' .or. method == 'coupled'

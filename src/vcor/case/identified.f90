@@ -68,7 +68,7 @@ contains
       logical :: is_thick
 
       call case%get('plate', 'base', base)
-      is_thick = .not. (case%given('plate', 'thickness') .or. case%given('plate', 'half_thickness'))
+      is_thick = .not. case%has_thickness()
       waves = 'hereditary'
       if (is_thick .or. base /= 'free') waves = 'none'
       call case%set(case%address('plate', 'waves'), waves, given=.true.)

@@ -89,6 +89,10 @@ module vcor_case_problem
       integer, private :: base = base_free
       !> Waves of a thin plate, one of the `waves_*` constants
       integer, private :: waves = waves_relaxing
+      !> Whether the surface was that of a second sphere when `mechanics` chose the waves
+      logical, private :: is_pair = .false.
+      !> Whether `mechanics` chose the waves
+      logical, private :: is_chosen = .false.
       !> One of the `pair_*` constants
       integer, private :: pair = pair_eq1
       !> Its features, see `vcor_solver_features`
@@ -225,6 +229,10 @@ contains
       self%base = bases(findloc(base_names == text, .true., dim=1))
       call self%reading%get(case, 'plate', 'waves', text)
       self%waves = waves(findloc(wave_names == text, .true., dim=1))
+      self%is_pair = case%has_second_sphere()
+      call case%get('contact', 'mechanics', text)
+      self%is_chosen = text == 'exact' .and. .not. case%given('plate', 'waves')
+      call case%get('plate', 'waves', text)
       if (text == 'none') then
          call self%reading%leave(self%at%extent, &
             "with plate.waves = 'none' the plate does not move")
@@ -444,6 +452,13 @@ contains
       surface_radius = self%reading%number(case, self%at%surface_radius)
       factor = 0.0_wp
       exponent = law%start_exponent
+      ! a sweep may pass from a second sphere to a seat
+      if (self%is_chosen .and. (surface_radius > 0.0_wp .neqv. self%is_pair)) then
+         call raise(error, error_input, "mechanics = 'exact' leaves waves = 'none' with a second " &
+            //"sphere, and solves them in a flat or concave surface: expected one sign, or " &
+            //'plate.waves', about='surface_radius')
+         return
+      end if
       if (abs(surface_radius) > 0.0_wp) then
          if (self%shape /= 'sphere') call raise(error, error_input, "only shape = 'sphere' meets " &
             //'a curved surface', about='surface_radius shape')

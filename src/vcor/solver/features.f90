@@ -101,7 +101,8 @@ module vcor_solver_features
       "the second term of the Volterra series is solved by method = 'direct' only", &
       'volterra_order volterra_coefficient method'), &
       refusal_t([ive, 0, 0], of_ghost, &
-      "only method = 'direct' continues after the separation", 'continue_after_separation method'), &
+      "only method = 'direct' continues after the separation", &
+      'continue_after_separation method'), &
       refusal_t([ive, 0, 0], of_frozen_plate, &
       "waves = 'frozen' are solved by method = 'direct' only", 'waves method'), &
       refusal_t([paper, 0, 0], of_layer, "adams_bashforth is the scheme of the paper, for a free " &

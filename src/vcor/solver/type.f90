@@ -12,8 +12,8 @@ module vcor_solver_type
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, features_of, light_plate, &
-      as_text
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, features_of, &
+      light_plate, as_text
 
    !> Length of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')

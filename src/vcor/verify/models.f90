@@ -43,13 +43,14 @@ contains
       type(model_t) :: all(2*size(plates)*size(laws) + 2)
       type(problem_t) :: problem
       type(error_t), allocatable :: error
-      character(len=:), allocatable :: waves, law, pair
+      character(len=:), allocatable :: waves, law, pair, base
       logical :: exists, has_law
       integer :: i, j, k, n, half
 
       call case%get('plate', 'waves', waves)
       call case%get('contact', 'law', law)
       call case%get('contact', 'pair', pair)
+      call case%get('plate', 'base', base)
       n = 0
       call problem_of_case(problem, case, error)
       has_law = problem%reading%has(case%address('contact', 'law'))
@@ -62,7 +63,7 @@ contains
                      plates(i) == waves .and. laws(j) == law .and. k == 1)
                   call solve_model(case, model, exists)
                   exists = exists .or. plates(i) == waves .or. j > 1 &
-                     .or. has_thickness(case)
+                     .or. (base == 'free' .and. case%has_thickness())
                end associate
                if (.not. exists) exit
                n = n + 1
@@ -73,8 +74,12 @@ contains
       if (half > 0) then
          if (.not. any(differ(all(:half)%outcome, all(half + 1:n)%outcome))) n = half
       end if
+      if (case%has_second_sphere() .and. waves /= 'body') then
+         allocate (models, source=all(:n))
+         return
+      end if
       ! of any thickness, and the limit of a thick plate
-      do i = 1, merge(2, 1, case%given('plate', 'half_thickness'))
+      do i = 1, merge(2, 1, case%has_thickness())
          ! a flat punch does not recede
          if (has_law) law = 'receding'
          all(n + 1) = model_t('body', law, 'series', waves == 'body' .and. i == 1)
@@ -84,18 +89,6 @@ contains
       end do
       allocate (models, source=all(:n))
    end subroutine solve_models
-
-   !> Whether a plate that could bend has a thickness
-   pure function has_thickness(case) result(yes)
-      type(case_t), intent(in) :: case
-      logical :: yes
-
-      character(len=:), allocatable :: base
-
-      call case%get('plate', 'base', base)
-      yes = base == 'free' .and. (case%given('plate', 'half_thickness') &
-         .or. case%given('plate', 'thickness'))
-   end function has_thickness
 
    !> Whether two outcomes differ in restitution by more than their errors, or only one has any. One
    !> of contact and plate solved as one has that of the sphere only
@@ -134,7 +127,10 @@ contains
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
       call other%unset(other%address('solver', 'continue_after_separation'))
-      if (model%is_half_space) call other%unset(other%address('plate', 'half_thickness'))
+      if (model%is_half_space) then
+         call other%unset(other%address('plate', 'half_thickness'))
+         call other%unset(other%address('plate', 'thickness'))
+      end if
       ! an accuracy for internal variables may be out of reach of the coupled contact
       if (model%waves == 'body') call other%unset(other%address('solver', 'accuracy'))
       call problem_of_case(problem, other, error)
