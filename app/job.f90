@@ -7,7 +7,7 @@ module vcor_app_job
    use vcor_case_catalogue, only : catalogue, key_t, real_key
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
-   use vcor_case_problem, only : method_of
+   use vcor_case_mechanics, only : method_of
    use vcor_case_values, only : range_message
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t

@@ -10,7 +10,8 @@ module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_body, only : material_of_case
-   use vcor_case_problem, only : has_body, solve_case
+   use vcor_case_mechanics, only : has_body
+   use vcor_case_problem, only : solve_case
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated

@@ -22,8 +22,8 @@ module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_body, only : body_t, describe, update_body
    use vcor_case_case, only : address_t, case_t
-   use vcor_case_catalogue, only : find_group
    use vcor_case_cause, only : explain
+   use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
@@ -39,13 +39,13 @@ module vcor_case_problem
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : pi, standard_gravity, wp
-   use vcor_words, only : list_of_words, longest_name
-   use vcor_solver, only : check_settings, method_for, new_solver, solve_impact, &
+   use vcor_solver, only : check_settings, new_solver, solve_impact, &
       solver_settings_t, solver_t
+   use vcor_solver_features, only : features, of_body, of_ghost, of_second_term, unread, why_unread
    implicit none
    private
 
-   public :: problem_t, problem_of_case, solve_case, method_of, has_body, why_no_pair
+   public :: problem_t, problem_of_case, solve_case
 
    !> Number of no change: an object that has not been made, or could not
    integer, parameter :: never = -1
@@ -89,16 +89,14 @@ module vcor_case_problem
       integer, private :: base = base_free
       !> Waves of a thin plate, one of the `waves_*` constants
       integer, private :: waves = waves_relaxing
-      !> Whether the plate has waves as it is, of any thickness
-      logical, private :: has_body = .false.
       !> Whether the surface was that of a second sphere when `mechanics` chose the waves
       logical, private :: is_pair = .false.
       !> Whether `mechanics` chose the waves
       logical, private :: is_chosen = .false.
       !> One of the `pair_*` constants
       integer, private :: pair = pair_eq1
-      !> Whether the Volterra series has its second term
-      logical, private :: second_term = .false.
+      !> Its features, see `vcor_solver_features`
+      logical, private :: has(size(features)) = .false.
       !> Latest change of materials and half thickness when modulus and plate were made from them
       integer, private :: contact_made_at = never
       !> Latest change of the numbers of the solver when it was made
@@ -200,40 +198,6 @@ contains
       end if
    end subroutine choose_contact
 
-   !> Reason why the rule for pairs does not matter
-   pure function why_no_pair(case) result(reason)
-      !> A case whose bodies have materials
-      type(case_t), intent(in) :: case
-      !> The reason; empty if it does
-      character(len=:), allocatable :: reason
-
-      character(len=:), allocatable :: sphere, plate
-
-      sphere = model_of(case, 'sphere')
-      plate = model_of(case, 'plate')
-      reason = ''
-      if (sphere == 'rigid') then
-         reason = 'the sphere is rigid'
-      else if (plate == 'rigid') then
-         reason = 'the plate is rigid'
-      else if (case%material_of('sphere') == case%material_of('plate')) then
-         reason = 'sphere and plate are of one material'
-      else if (sphere == 'elastic' .and. plate == 'elastic') then
-         reason = 'sphere and plate are elastic'
-      end if
-   end function why_no_pair
-
-   !> Model of the material of a body
-   pure function model_of(case, body) result(model)
-      type(case_t), intent(in) :: case
-      !> sphere or plate
-      character(len=*), intent(in) :: body
-      !> Its model
-      character(len=:), allocatable :: model
-
-      model = case%model(find_group('material'), case%material_of(body))
-   end function model_of
-
    !> Read the base of the plate and its waves: a rigid one has none
    subroutine choose_plate(self, case)
       !> The problem, its materials described
@@ -265,7 +229,6 @@ contains
       self%base = bases(findloc(base_names == text, .true., dim=1))
       call self%reading%get(case, 'plate', 'waves', text)
       self%waves = waves(findloc(wave_names == text, .true., dim=1))
-      self%has_body = has_body(case)
       self%is_pair = case%has_second_sphere()
       call case%get('contact', 'mechanics', text)
       self%is_chosen = text == 'exact' .and. .not. case%given('plate', 'waves')
@@ -282,10 +245,16 @@ contains
       type(problem_t), intent(inout) :: self
       type(case_t), intent(in) :: case
 
-      character(len=:), allocatable :: method, text, reason
-      integer :: order
+      !> Keys that depend on the method
+      character(len=*), parameter :: groups(*) = [character(len=6) :: 'impact', 'solver', &
+         'solver', 'solver', 'solver', 'solver', 'solver', 'solver']
+      character(len=*), parameter :: keys(*) = [character(len=25) :: 'gravity', 'scheme', 'form', &
+         'quadrature', 'time_step', 'volterra_order', 'volterra_coefficient', &
+         'continue_after_separation']
+      character(len=:), allocatable :: text
+      character(len=len(unread%reason)) :: reason
+      integer :: i
 
-      method = method_of(case)
       call self%reading%get(case, 'solver', 'method', text)
       self%settings%method = text
       call case%get('solver', 'scheme', text)
@@ -294,93 +263,17 @@ contains
       self%settings%form = text
       call case%get('solver', 'quadrature', text)
       self%settings%quadrature = text
-      call case%get('solver', 'volterra_order', order)
-      self%second_term = order == 2
-      call case%get('solver', 'continue_after_separation', self%settings%ghost)
-
-      reason = ''
-      if (method == 'coupled') reason = 'method coupled is linear theory and takes its own ' &
-         //"steps: this key is for method = 'direct'"
-      call read_if(reason, 'scheme volterra_order continue_after_separation')
-      if (method == 'ive') reason = 'method ive takes its own steps, solver.time_step is for ' &
-         //"method = 'direct'"
-      call read_if(reason, 'time_step')
-      if (method == 'ive') reason = ''
-      if (reason == '' .and. .not. self%second_term) reason = 'it is for solver.volterra_order = 2'
-      call read_if(reason, 'volterra_coefficient')
-      if (method /= 'coupled') reason = ''
-      if (reason == '' .and. self%settings%scheme /= 'adams_bashforth') &
-         reason = "it is for scheme = 'adams_bashforth'"
-      call read_if(reason, 'form quadrature')
-      if (self%settings%scheme /= 'adams_bashforth') then
-         call self%reading%mark(self%at%gravity)
-      else
-         call self%reading%leave(self%at%gravity, &
-            "adams_bashforth marches the paper's wave equation, without a weight")
-      end if
-
-   contains
-
-      !> Record keys as read, or as left out if there is a reason
-      subroutine read_if(reason, keys)
-         !> Reason why they are left out; empty if they are read
-         character(len=*), intent(in) :: reason
-         !> Keys of &solver, separated by blanks
-         character(len=*), intent(in) :: keys
-
-         character(len=longest_name), allocatable :: names(:)
-         integer :: i
-
-         allocate (names, source=list_of_words(keys))
-         do i = 1, size(names)
-            if (reason == '') then
-               call self%reading%mark(case%address('solver', trim(names(i))))
-            else
-               call self%reading%leave(case%address('solver', trim(names(i))), reason)
-            end if
-         end do
-      end subroutine read_if
+      self%has = features_of_case(case)
+      self%settings%ghost = self%has(of_ghost)
+      do i = 1, size(keys)
+         reason = why_unread(trim(groups(i)), trim(keys(i)), place_of_method(case), self%has)
+         if (reason == '') then
+            call self%reading%mark(case%address(trim(groups(i)), trim(keys(i))))
+         else
+            call self%reading%leave(case%address(trim(groups(i)), trim(keys(i))), trim(reason))
+         end if
+      end do
    end subroutine choose_method
-
-   !> Method in use
-   pure function method_of(case) result(name)
-      type(case_t), intent(in) :: case
-      !> ive, direct or coupled
-      character(len=7) :: name
-
-      character(len=:), allocatable :: method, scheme
-
-      call case%get('solver', 'method', method)
-      call case%get('solver', 'scheme', scheme)
-      name = method_for(method, scheme, has_body(case), has_variant(case))
-   end function method_of
-
-   !> Whether the impact has one of the paper's variants, which the direct methods solve
-   pure function has_variant(case)
-      type(case_t), intent(in) :: case
-      logical :: has_variant
-
-      character(len=:), allocatable :: waves
-      integer :: order
-      logical :: goes_on
-
-      call case%get('plate', 'waves', waves)
-      call case%get('solver', 'volterra_order', order)
-      call case%get('solver', 'continue_after_separation', goes_on)
-      has_variant = waves == 'frozen' .or. order == 2 .or. goes_on
-   end function has_variant
-
-   !> Whether the impact has waves in a plate of any thickness; a rigid plate has none
-   pure function has_body(case)
-      !> A case whose plate has a material
-      type(case_t), intent(in) :: case
-      logical :: has_body
-
-      character(len=:), allocatable :: waves
-
-      call case%get('plate', 'waves', waves)
-      has_body = waves == 'body' .and. model_of(case, 'plate') /= 'rigid'
-   end function has_body
 
    !> Solve the impact of a case
    subroutine solve_case(case, outcome, error)
@@ -532,7 +425,7 @@ contains
       logical :: has_waves
 
       self%impact%face = face_t()
-      has_waves = self%has_body .and. .not. self%plate%material%rigid
+      has_waves = self%has(of_body)
       if (.not. (has_waves .or. self%settings%method == 'coupled')) return
       base = self%base
       ! without waves a wide free plate is as stiff as a half space
@@ -616,12 +509,8 @@ contains
       else if (self%waves /= waves_none) then
          call raise(error, error_input, 'the waves of a thin plate are those of a free one, ' &
             //"expected waves = 'none' or 'body' with a base", about='waves base')
-      else if (self%settings%scheme /= 'product') then
-         call raise(error, error_input, 'adams_bashforth is the scheme of the paper, for a free ' &
-            //"plate; use method = 'ive', or 'direct' with scheme = 'product'", &
-            about='scheme base')
       end if
-      if (allocated(error) .or. self%has_body .or. self%settings%method == 'coupled') return
+      if (allocated(error) .or. self%has(of_body) .or. self%settings%method == 'coupled') return
       layer%base = self%base
       layer%poisson_ratio = self%plate%material%poisson_ratio()
       if (self%sphere%material%rigid) return
@@ -655,7 +544,7 @@ contains
          self%settings%end_time = positive_or_zero(self%reading%number(case, self%at%end_time))
          self%settings%accuracy = positive_or_zero(self%reading%number(case, self%at%accuracy))
          self%settings%second_coefficient = 0.0_wp
-         if (self%second_term) &
+         if (self%has(of_second_term)) &
             self%settings%second_coefficient = case%number(self%at%second_coefficient)
       end if
       call check_settings(self%settings, self%impact, error)
