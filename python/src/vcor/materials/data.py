@@ -15,8 +15,9 @@ import numpy as np
 from .._library import InputError, UsageError
 from .._text import option
 from .grid import read_grid
+from .labels import unified
 from .names import read_head
-from .reader import Reader, refuse_all_but_moduli
+from .reader import SAME_TEMPERATURE, Reader, refuse_all_but_moduli
 from .tables import Choice
 from .units import ZERO_C
 
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 Columns = Mapping[str, str | int] | Sequence[str] | None
 Units = Mapping[str, str] | Sequence[str] | str | None
 
-#: Difference of temperatures that begins another curve [K]
-SAME_TEMPERATURE = 1.0
 #: Relative difference of the frequencies of a sweep of temperatures at one frequency
 SAME_FREQUENCY = 0.01
 
@@ -194,7 +193,9 @@ def _at(name: str) -> tuple[str, str]:
 
 def kelvin(text: str, what: str) -> float:
     """A temperature such as -20C, 253K or 253 in kelvin."""
-    found = re.fullmatch(r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", text.strip())
+    found = re.fullmatch(
+        r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", unified(text).replace("−", "-").strip()
+    )
     if not found:
         raise UsageError(f"{what}: found '{text}', expected a temperature such as -20C or 253K")
     return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)

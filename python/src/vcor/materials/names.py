@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .. import _library
+from .labels import TEMPERATURE, read_label, unified
 from .units import plain_unit, quantities_of, suffix_unit
 
 
@@ -43,14 +44,17 @@ _SYMBOLS = {symbol: one for one in QUANTITIES.values() for symbol in one.symbols
 _WORDS = {word: one for one in QUANTITIES.values() for word in one.words}
 #: Columns of a laboratory's table that are no data
 ASIDE = {"", *_NAMES["aside"]}
+#: Columns of texts that rows may end before
+REMARKS = set(_NAMES["remarks"])
 _SHEAR = re.compile(
     r"shear|schub|scher|cisaillement|cizalla|せん断|剪切|\bG(?![a-z])|\|G", re.UNICODE
 )
 _TENSILE = re.compile(
     r"young|tensile|zug|elastizit|traction|引張|拉伸|\bE(?![a-z])|\|E|dehn", re.UNICODE
 )
-_DEGREES = r"([-+]?\d+(?:[.,]\d+)?)\s*(?:°|º|deg\.?)?\s*(C|K)"
-_AT = re.compile(rf"[\s,;@_(\[]+(?:at|bei|à|a|@|T\s*=)?\s*{_DEGREES}\b\s*[)\]]?")
+_AT = re.compile(
+    rf"[\s,;@_(\[]+(?:(?:at|bei|à|a|@)\s*)?(?:T\s*[=:]?\s*)?{TEMPERATURE}\s*[)\]]?", re.UNICODE
+)
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,8 @@ class Head:
     implied: bool = False
     #: What is wrong with it, for a message
     flaw: str = ""
+    #: Why its temperature is not sure, for a message
+    doubt: str = ""
 
     @property
     def key(self) -> str:
@@ -163,10 +169,10 @@ def read_head(text: str) -> Head:
     """What the head of a column says: its quantity, its unit, and what goes with them."""
     given = text
     text = unicodedata.normalize("NFKC", text.strip().strip('"')).strip().strip(":")
-    temperature = float("nan")
-    if found := _AT.search(text):
-        temperature = float(found[1].replace(",", ".")) + (273.15 if found[2] == "C" else 0.0)
-        text = (text[: found.start()] + text[found.end() :]).strip()
+    temperature, doubt, plainer = float("nan"), "", unified(text)
+    if (found := _AT.search(plainer)) and (label := read_label(found[0])):
+        temperature, doubt = label.kelvin, label.flaw
+        text = (plainer[: found.start()] + plainer[found.end() :]).strip()
     text, base, flaw = _logarithm(text)
     bare, unit, sigma, known = "", "", False, None
     for name, of in _parts(text):
@@ -178,10 +184,11 @@ def read_head(text: str) -> Head:
     else:
         # not known: its unit is what stands in brackets
         unit = next((of for name, of in _parts(text)[1:] if quantities_of(of)), "")
-        return Head(given, unit=unit, base=base, temperature=temperature, flaw=flaw)
+        return Head(given, unit=unit, base=base, temperature=temperature, flaw=flaw,
+                    doubt=doubt)  # fmt: skip
     if not known:
         return Head(given, re.sub(r"\s+", "_", bare.strip()), "", unit, base, temperature,
-                    sigma=sigma, flaw=flaw)  # fmt: skip
+                    sigma=sigma, flaw=flaw, doubt=doubt)  # fmt: skip
     angular = known.name == "angular_frequency"
     implied = not unit and (_symbol(bare) in known.symbols or angular or plain(bare) == "freq")
     if implied:
@@ -199,7 +206,7 @@ def read_head(text: str) -> Head:
         shear = kinds[0] if kinds[0] != kinds[1] else None
     name = "frequency" if angular else known.name
     return Head(given, name, known.unit, "" if unit in ("[]",) else unit, base, temperature, shear,
-                sigma, angular, implied and bool(unit), flaw)  # fmt: skip
+                sigma, angular, implied and bool(unit), flaw, doubt)  # fmt: skip
 
 
 def _logarithm(text: str) -> tuple[str, float, str]:

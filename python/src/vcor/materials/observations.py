@@ -18,7 +18,8 @@ from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
 from .._text import near
 from ..case import Case, arrays, number, radius_of
-from .data import SAME_TEMPERATURE, curves, read_data, tensile
+from .data import curves, read_data, tensile
+from .reader import SAME_TEMPERATURE
 from .tables import Choice
 
 #: By column: the unit of its last digit, and its most significant digits; of arrays none is known

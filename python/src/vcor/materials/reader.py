@@ -20,19 +20,22 @@ from .grid import (
     is_number,
     number,
 )
-from .names import ASIDE, QUANTITIES, Head, is_address, plain
+from .labels import COLDEST, Label
+from .names import ASIDE, QUANTITIES, REMARKS, Head, is_address, plain
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
-from .units import examples, plain_unit, quantities_of, size
+from .units import ZERO_C, examples, plain_unit, quantities_of, size
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Temperature without a unit below which it is not in kelvin
-_COLDEST = 150.0
 #: Range of measured moduli, times and frequencies
 _LEAST, _MOST = 1e-30, 1e30
 #: Logarithm of the difference between E''/E' and tan delta by which they contradict each other
 _CONTRADICTION = 0.1
+#: Difference of temperatures that begins another curve [K]
+SAME_TEMPERATURE = 1.0
+#: Sets that a report names one by one
+MOST_SETS = 20
 ALIKE = {
     "dynamic": "moduli against frequency",
     "relaxation": "moduli against time",
@@ -77,6 +80,8 @@ class Reader:
         self.left: list[str] = []
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
+        #: Temperatures that are stated, but not sure
+        self._doubts: list[Label] = []
 
     def parts(self) -> tuple[list[pd.DataFrame], str]:
         """Frames of the tables of one kind, and the kind."""
@@ -108,6 +113,7 @@ class Reader:
             if one:
                 frames += self._frames(table, kind, len(frames))
             else:
+                self._all_cells(table)
                 self.left += [f"table at line {table.line}"] * bool(_known(table))
         if (
             kind in ("record", "impacts")
@@ -117,7 +123,37 @@ class Reader:
             raise InputError(
                 f"{self.path}: found {len(frames)} tables of {ALIKE[kind]}, expected one"
             )
+        self._same_labels(frames)
         return frames, kind
+
+    def _same_labels(self, frames: Sequence[pd.DataFrame]) -> None:
+        """Refuse temperatures that are not sure, and sets with and without a temperature."""
+        several = len({label.line for label in self._doubts}) > 1
+        for label in self._doubts:
+            # `T = 5` above a single set may be a thickness, and any temperature one of storage
+            if several or (label.has_unit and label.alone):
+                raise InputError(f"{self.path}:{label.line}: {label.flaw}")
+        have = ["temperature" in one for one in frames]
+        if any(have) and not all(have):
+            first, other = (frames[have.index(x)].index[0] for x in (True, False))
+            raise InputError(
+                f"{self.path}:{other}: found points without a temperature, while those at line "
+                f"{first} have one, expected it for all, such as a line T = 20 °C above them"
+            )
+
+    def _all_cells(self, table: Table) -> None:
+        """Refuse rows that end before the last name, as cells may be missing anywhere in them."""
+        rows = table.rows()
+        need = len(table.heads)
+        while need and _may_end_before(table.heads[need - 1], need - 1, rows):
+            need -= 1
+        for row in rows:
+            if len(row.cells) < need:
+                n, last = len(row.cells), table.heads[need - 1].text.strip()
+                raise InputError(
+                    f"{self.path}:{row.line}: found {n} cell{'s' * (n > 1)} below {need} names up "
+                    f"to '{last}', expected an empty cell where a number is missing"
+                )
 
     def _kind(self, table: Table) -> str:
         """Kind of a table by the names that it has."""
@@ -191,6 +227,7 @@ class Reader:
         """Frames of a table: one for each temperature in its heads, and below each title."""
         if table.flaw:
             raise InputError(table.flaw)
+        self._all_cells(table)
         wanted = self._wanted(table, kind)
         if kind == "impacts":
             self._all_known(table)
@@ -207,15 +244,22 @@ class Reader:
         frames: list[pd.DataFrame] = []
         for tag, group in groups:
             for part, (title, rows) in enumerate(table.parts):
-                at = title if math.isnan(tag) else tag
                 frame = self._frame(
-                    Table(table.line, table.heads, [(at, rows)]), group, units, kind
+                    Table(table.line, table.heads, [(title, rows)]), group, units, kind
                 )
                 if frame is None:
                     continue
+                at = title.kelvin if math.isnan(tag) else tag
+                if part and abs(title.kelvin - at) > SAME_TEMPERATURE:
+                    raise InputError(
+                        f"{self.path}:{title.line}: found {_celsius(title.kelvin)} above numbers "
+                        f"whose names say {_celsius(at)}, expected names of their own above them"
+                    )
                 if "temperature" not in frame and math.isfinite(at):
                     frame["temperature"] = at
                     self.units["temperature"] = "K"
+                elif "temperature" not in frame and title.flaw:
+                    self._doubts.append(title)
                 own = frame["set"].to_numpy() if "set" in frame else np.zeros(len(frame))
                 changes = np.concatenate([[0], np.cumsum(np.diff(own) != 0)])
                 frame["set"] = first + len(frames) + changes
@@ -407,7 +451,7 @@ class Reader:
         """Refuse temperatures without a unit that cannot be in kelvin."""
         values = [number(column.cell(row)) for row in table.rows()]
         warmest = np.nanmax(values)
-        if warmest < _COLDEST:
+        if warmest < COLDEST:
             raise InputError(
                 f"{place}: column '{column.head.text}': found at most {warmest:g} K, expected "
                 f"{column.head.text} [C] for degrees Celsius, or [K]"
@@ -610,8 +654,8 @@ class Reader:
         ]
         n = len(frame)
         line = f"{self.path}: {n} point{'s' * (n > 1)}: {', '.join(parts)}"
-        if "set" in frame:
-            line += f"; {frame['set'].nunique()} sets"
+        if sets := _sets(frame):
+            line += f"; {sets}"
         if self.comma:
             line += "; with decimal commas"
         if self.left:
@@ -626,6 +670,54 @@ def refuse_all_but_moduli(kind: str | None, path: str) -> None:
         found = f"found {ALIKE[kind]}, " if kind in ALIKE else ""
         test = "; of a relaxation test F/(A strain) is one, with the area A" * (kind == "record")
         raise InputError(f"{path}: {found}expected moduli against time or frequency{test}")
+
+
+def _sets(frame: pd.DataFrame) -> str:
+    """The sets of points in words: how many points each has, and its temperature."""
+    own = frame["set"].to_numpy() if "set" in frame else np.zeros(len(frame))
+    begins = np.diff(own) != 0
+    kelvin = (
+        frame["temperature"].to_numpy() if "temperature" in frame else np.full(len(own), np.nan)
+    )
+    if "shift_factor" in frame:
+        # a temperature each
+        kelvin = np.full(len(own), np.nan)
+    elif {"frequency", "time"} & set(frame):
+        begins |= np.abs(np.diff(kelvin)) > SAME_TEMPERATURE
+    groups = np.split(np.arange(len(own)), np.flatnonzero(begins) + 1)
+    counts = [len(group) for group in groups]
+    at = [_range(kelvin[group]) for group in groups]
+    if len(groups) == 1:
+        return at[0].strip()
+    if len(groups) > MOST_SETS:
+        return (f"{len(groups)} sets of {min(counts)} to {max(counts)} points"
+                f"{_range(kelvin)}")  # fmt: skip
+    told = [f"{n}{place}" for n, place in zip(counts, at, strict=True)]
+    points = f"{counts[0]} point{'s' * (counts[0] > 1)}{at[0]}"
+    return f"{len(groups)} sets: {', '.join([points, *told[1:]])}"
+
+
+def _range(kelvin: Floats) -> str:
+    """Temperatures of points in words, empty if there are none."""
+    known = kelvin[np.isfinite(kelvin)]
+    if not known.size:
+        return ""
+    if np.ptp(known) < SAME_TEMPERATURE:
+        return f" at {_celsius(known.mean())}"
+    return f" at {_celsius(known.min()).removesuffix(' C')} to {_celsius(known.max())}"
+
+
+def _celsius(kelvin: float) -> str:
+    """A temperature in degrees Celsius."""
+    return f"{round(float(kelvin) - ZERO_C, 2) + 0.0:g} C"
+
+
+def _may_end_before(head: Head, index: int, rows: Sequence[Row]) -> bool:
+    """Whether rows may end before a column, the last one: it holds no numbers, but remarks."""
+    if not head.text.strip() or plain(head.text) in REMARKS:
+        return True
+    cells = [row.cells[index] for row in rows if index < len(row.cells)]
+    return not any(map(is_number, cells)) and not all(map(is_missing, cells))
 
 
 def _known(table: Table) -> set[str]:
