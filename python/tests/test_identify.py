@@ -652,10 +652,11 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
     ("head", "said"),
     [
         ("rebound [%]", "columns={'resilience': 'rebound [%]'}"),
-        ("rebound", "'resilience': 'rebound'"),
-        ("bounce [mm]", "'drop_height': 'bounce [mm]'"),
+        ("rebound", "is rebound_height or rebound_velocity or resilience, say which: "),
+        ("bounce [mm]", "say so: columns={'rebound_height': 'bounce [mm]'}"),
         ("impulse [ms]", "'contact_time': 'impulse [ms]'"),
-        ("contact tyme", "did you mean 'contact_time'?"),
+        ("contact tyme", "columns={'contact_time': 'contact tyme'}"),
+        ("kontact_tme", "did you mean 'contact_time'?"),
     ],
 )
 def test_a_column_that_is_not_known_is_guessed_by_its_unit(tmp_path, head, said):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _library
 from .._library import InputError, UsageError
 from .._text import option
 from .grid import read_grid
@@ -117,7 +118,7 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
                 f"{data.attrs['path']}:{one.index[at]}: found a {across} of "
                 f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
                 f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
-                "or a column of temperatures or sets that separates the curves"
+                "or a column of temperatures that separates the curves"
             )
         one = one.sort_values(across)
         temperature = one["temperature"].mean() if "temperature" in one else math.nan
@@ -208,7 +209,7 @@ def is_temperature(name: str) -> bool:
 
 def plain_name(text: str) -> str:
     """Name of a quantity as vcor has it, whatever it is called."""
-    return read_head(text).key or text
+    return text if text in _library.columns(0) else read_head(text).key or text
 
 
 def add_data_options(parser: argparse.ArgumentParser) -> None:

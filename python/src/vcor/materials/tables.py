@@ -460,7 +460,7 @@ def _one(table: Table, path: str, key: str, columns: list[Column]) -> Column:
                 f"{path}:{table.line}: found two columns of {name.replace('_', ' ')} with "
                 f"different numbers, '{first.head.text}' (column {first.index + 1}) and "
                 f"'{second.head.text}' "
-                f"(column {second.index + 1}), expected one, or "
+                f"(column {second.index + 1}), expected one; say which, such as "
                 + option("columns", {key: _stated(table, second)})
             )
     return best
