@@ -705,6 +705,18 @@ def test_the_table_of_rebound():
             assert case.solve()["cor"] == pytest.approx(float(wanted), abs=6e-6)
 
 
+def test_the_limits_of_small_losses_on_the_page_of_rebound():
+    page = (ROOT / "docs" / "rebound.md").read_text("utf-8")
+    shown = re.search(r"1 - e tends to ([\d.]+) tan delta \(Boltzmann: ([\d.]+)\)", page)
+    case = vcor.read(ROOT / "examples" / "identification" / "resilience.nml")
+    case["solver.accuracy"], exponent = 1e-11, 1e-5
+    case["rubber.exponent"] = exponent
+    for law, wanted in zip(("receding", "boltzmann"), shown.groups(), strict=True):
+        case["contact.law"] = law
+        ratio = (1 - case.solve()["cor"]) / math.tan(math.pi * exponent / 2)
+        assert f"{ratio:.2f}" == wanted
+
+
 def test_the_limits_of_the_model_are_reported(sls):
     """Coefficients only, with a sphere that is too large for the plate at high velocity."""
     sls["plate.waves"] = "none"
