@@ -162,3 +162,44 @@ def test_no_file_that_was_read_is_replaced(program, tmp_path):
 def test_errors(data, settings, error, line):
     with pytest.raises(error, match=line):
         vcor.fit(data, **settings)
+
+
+def test_arrays_by_name_have_units_and_any_order():
+    omega = np.geomspace(1, 1e4, 25)
+    p = (1j * omega * 1e-3) ** 0.5
+    found = 2e6 + 5e7 * p / (1 + p)
+    settings = {"model": "mittag_leffler", "poisson_ratio": 0.5}
+    right = vcor.fit((omega, found.real, found.imag), **settings)
+    for data in (
+        {
+            "E'' [MPa]": found.imag / 1e6,
+            "f [Hz]": omega / (2 * np.pi),
+            "E' [MPa]": found.real / 1e6,
+        },
+        {"loss_modulus": found.imag, "omega": omega, "storage_modulus": found.real},
+        {"Frequency [rad/s]": omega, "G' [Pa]": found.real / 3, "G'' [Pa]": found.imag / 3},
+    ):
+        one = vcor.fit(data, **settings)
+        assert [p.value for p in one.parameters] == pytest.approx(
+            [p.value for p in right.parameters], rel=1e-6
+        )
+    with pytest.warns(UserWarning, match=r"'frequency' is taken in rad/s; 'frequency \[Hz\]' is"):
+        vcor.fit({"frequency": omega, "storage_modulus": found.real, "loss_modulus": found.imag},
+                 **settings)  # fmt: skip
+
+
+RISE, FALL = [1.0, 2.0, 3.0], [3.0, 2.0, 1.0]
+
+
+@pytest.mark.parametrize(("data", "error", "line"), [
+    ({"x": RISE, "y": FALL}, vcor.InputError, "found 'x', expected time, relaxation"),
+    ({"t [s]": RISE}, vcor.InputError, "found time, expected time, relaxation_modulus"),
+    ({"t [mm]": RISE, "E [Pa]": FALL}, vcor.InputError, r"found 't \[mm\]'"),
+    ({"t": RISE, "time [s]": FALL}, vcor.InputError, "found two arrays of the time"),
+    ({"t": RISE, "G": FALL}, vcor.UsageError, "found shear moduli, 'G', expected poisson"),
+    ({"t": RISE, "log E": FALL}, vcor.InputError, "found 'log E'"),
+    ({}, vcor.InputError, "found nothing"),
+])  # fmt: skip
+def test_arrays_by_name_are_known(data, error, line):
+    with pytest.raises(error, match=line):
+        vcor.fit(data)

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _library
 from .._library import InputError, UsageError
 from .._text import option
 from .grid import read_grid
+from .labels import unified
 from .names import read_head
-from .reader import Reader, refuse_all_but_moduli
+from .reader import SAME_TEMPERATURE, Reader, refuse_all_but_moduli
 from .tables import Choice
 from .units import ZERO_C
 
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
 Columns = Mapping[str, str | int] | Sequence[str] | None
 Units = Mapping[str, str] | Sequence[str] | str | None
 
-#: Difference of temperatures that begins another curve [K]
-SAME_TEMPERATURE = 1.0
 #: Relative difference of the frequencies of a sweep of temperatures at one frequency
 SAME_FREQUENCY = 0.01
 
@@ -118,7 +118,7 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
                 f"{data.attrs['path']}:{one.index[at]}: found a {across} of "
                 f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
                 f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
-                "or a column of temperatures or sets that separates the curves"
+                "or a column of temperatures that separates the curves"
             )
         one = one.sort_values(across)
         temperature = one["temperature"].mean() if "temperature" in one else math.nan
@@ -194,7 +194,9 @@ def _at(name: str) -> tuple[str, str]:
 
 def kelvin(text: str, what: str) -> float:
     """A temperature such as -20C, 253K or 253 in kelvin."""
-    found = re.fullmatch(r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", text.strip())
+    found = re.fullmatch(
+        r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", unified(text).replace("−", "-").strip()
+    )
     if not found:
         raise UsageError(f"{what}: found '{text}', expected a temperature such as -20C or 253K")
     return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
@@ -207,7 +209,7 @@ def is_temperature(name: str) -> bool:
 
 def plain_name(text: str) -> str:
     """Name of a quantity as vcor has it, whatever it is called."""
-    return read_head(text).key or text
+    return text if text in _library.columns(0) else read_head(text).key or text
 
 
 def add_data_options(parser: argparse.ArgumentParser) -> None:

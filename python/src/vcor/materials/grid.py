@@ -42,6 +42,8 @@ class Row:
     text: str
     cells: list[str]
     remark: bool = False
+    #: Whether it is the name of a sheet, which is a remark
+    sheet: bool = False
 
     def numbers(self) -> int:
         """How many cells are numbers."""
@@ -202,8 +204,8 @@ def _spreadsheet(name: str, raw: bytes) -> Grid:
     starts, line = [], 0
     for title, sheet in sheets.items():
         starts.append(line + 1)
-        # it may say the temperature
-        rows.append(Row(line + 1, str(title), [str(title)]))
+        # it may say the temperature; a name such as 2020 is no row of data
+        rows.append(Row(line + 1, str(title), [], remark=True, sheet=True))
         for values in sheet.itertuples(index=False, name=None):
             line += 1
             cells = ["" if v is None or v != v else _cell(v) for v in values]

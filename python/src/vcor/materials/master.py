@@ -123,10 +123,8 @@ class Master:
             log10_shift=self.log_shift,
             log10_shift_error=self.log_error,
             vertical_shift=self.vertical,
-            laws=[{"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms,
-                   "determined": one.determined}
-                  for one in self.laws],
-        )  # fmt: skip
+            laws=[_law(one) for one in self.laws],
+        )
 
     def __str__(self) -> str:
         kelvin = self.reference_temperature
@@ -142,16 +140,19 @@ class Master:
         if self.law and self.flat:
             lines += ["", *self.flat, f"by law: these steps are those of {self.law.name}"]
         for law in self.laws:
-            constants = ", ".join(
-                f"{name} {value:.5g} +- {law.errors[name]:.2g} {_UNITS[name]}".strip()
-                for name, value in law.values.items()
-            )
-            lines += ["", f"{law.name}: {constants}"]
-            if not law.determined:
-                lines.append("   not determined by these data" + (
-                    f", only wlf_c1/wlf_c2 {law.ratio[0]:.4g} +- {law.ratio[1]:.2g} 1/K: the "
-                    "temperatures are too close together" if law.name == "WLF" else ""
-                ))  # fmt: skip
+            if law.name == "WLF" and not law.determined:
+                value, error = law.ratio
+                lines += ["", f"WLF: wlf_c1/wlf_c2 {value:.4g} +- {error:.2g} 1/K"]
+                lines.append("   which is all that these data determine of its constants: the "
+                             "temperatures are too close together, or the shift factors do not "
+                             "bend as WLF does")  # fmt: skip
+            else:
+                constants = ", ".join(
+                    f"{name} {value:.5g} +- {law.errors[name]:.2g} {_UNITS[name]}".strip()
+                    for name, value in law.values.items()
+                )
+                lines += ["", f"{law.name}: {constants}"]
+                lines += [] if law.determined else ["   not determined by these data"]
             if len(law.values) < len(self.temperatures) - 1 - len(self.flat):
                 lines.append(f"   misses the steps between temperatures by {law.rms:.2g} decades, "
                              f"{law.misfit:.2g} times their errors")  # fmt: skip
@@ -389,6 +390,17 @@ def _work(options: argparse.Namespace) -> None:
     from .._outputs import finish
 
     finish(options, report, stem, texts, found.figure())
+
+
+def _law(law: Law) -> dict[str, Any]:
+    """A law as it is written to JSON: without constants of WLF that are not determined."""
+    known = law.name != "WLF" or law.determined
+    found: dict[str, Any] = {"law": law.name}
+    for key, values in (("values", law.values), ("errors", law.errors)):
+        found[key] = {name: one if known else None for name, one in values.items()}
+    if law.name == "WLF":
+        found["ratio"], found["ratio_error"] = law.ratio
+    return {**found, "rms": law.rms, "determined": law.determined}
 
 
 def _rows(columns: Sequence[Floats]) -> str:

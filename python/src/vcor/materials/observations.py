@@ -18,7 +18,9 @@ from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
 from .._text import near
 from ..case import Case, arrays, number, radius_of
-from .data import SAME_TEMPERATURE, curves, read_data, tensile
+from .data import curves, read_data, tensile
+from .names import COMPUTED
+from .reader import SAME_TEMPERATURE
 from .tables import Choice
 
 #: By column: the unit of its last digit, and its most significant digits; of arrays none is known
@@ -506,7 +508,7 @@ def observations(
     materials, taken, written = materials_of(free), "", NO_DIGITS
     if isinstance(source, Mapping):
         name = "data"
-        columns = arrays(source)
+        columns, taken = _measured(arrays(source))
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
     else:
@@ -530,6 +532,20 @@ def observations(
         block = Impacts(name, columns, case, written)
     block.taken = taken
     return block
+
+
+def _measured(columns: dict[str, Floats]) -> tuple[dict[str, Floats], str]:
+    """Columns without those that no one measures, whose errors are errors of data; what is left."""
+    found: dict[str, Floats] = {}
+    left = []
+    for name, column in columns.items():
+        if (stem := name.removesuffix("_error")) in columns and stem != name:
+            found.setdefault(f"{stem}_sigma", column)
+        elif name in COMPUTED:
+            left.append(name)
+        else:
+            found[name] = column
+    return found, f"data: not taken: {', '.join(left)}" * bool(left)
 
 
 def read_columns(

@@ -13,7 +13,6 @@ from .. import _command
 from .._library import InputError, UsageError, within
 from .._text import command, option
 from .data import (
-    SAME_TEMPERATURE,
     Columns,
     Units,
     add_data_options,
@@ -23,7 +22,7 @@ from .data import (
     read_data,
     tensile,
 )
-from .reader import ALIKE, refuse_all_but_moduli
+from .reader import ALIKE, SAME_TEMPERATURE, refuse_all_but_moduli
 
 
 def table(
