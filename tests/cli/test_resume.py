@@ -181,7 +181,7 @@ def test_damage(long):
 def checked(row):
     """A line of a point with the check sum that belongs to it."""
     row = bytes(row[: row.rindex(b" ")])
-    return row + b" %08X" % zlib.crc32(row)
+    return row + b" %016X" % zlib.crc32(row)
 
 
 def status_of(row):

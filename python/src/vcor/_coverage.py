@@ -26,7 +26,8 @@ _JUDGED = ("validity", "validity_cause", "status", "contact_time", "cor")
 #: Keys that change the duration of a contact, and neither a material nor what it is made of
 ONLY_FASTER = ("impact.velocity", "impact.drop_height")
 
-_silent: ContextVar[bool] = ContextVar("silent", default=False)
+#: Warnings that are not given
+_silent: ContextVar[tuple[type[Warning], ...]] = ContextVar("silent", default=())
 
 
 class Numbers(dict[str, float | str]):
@@ -64,9 +65,9 @@ def forget(case: Case) -> None:
 
 
 @contextlib.contextmanager
-def unwarned() -> Iterator[None]:
-    """No warnings of results that are parts of another one."""
-    token = _silent.set(True)
+def unwarned(*kinds: type[Warning]) -> Iterator[None]:
+    """Give no warnings of these kinds, or of both, of results that are parts of another one."""
+    token = _silent.set(kinds or (ValidityWarning, DataRangeWarning))
     try:
         yield
     finally:
@@ -124,13 +125,12 @@ def about(
     said = {"validity": validity_of(levels, causes)}
     if lines := _beyond_data(case, addresses, table, *results[:, -3:].T):
         said["beyond_data"] = lines
-    if not _silent.get():
-        if said["validity"] not in ("good", "none"):
-            warnings.warn(
-                f"{case.name}: validity: {said['validity']}", ValidityWarning, stacklevel=level
-            )
-        for line in lines.splitlines():
-            warnings.warn(line, DataRangeWarning, stacklevel=level)
+    if said["validity"] not in ("good", "none") and ValidityWarning not in _silent.get():
+        warnings.warn(
+            f"{case.name}: validity: {said['validity']}", ValidityWarning, stacklevel=level
+        )
+    for line in lines.splitlines():
+        warnings.warn(line, DataRangeWarning, stacklevel=level)
     return said
 
 
@@ -156,9 +156,12 @@ def _beyond_data(
     One impact after another asks only if its contact is shorter or longer than those before: the
     library examines the shortest and the longest one of many.
     """
+    # what nobody hears takes two solutions
+    if DataRangeWarning in _silent.get():
+        return ""
     known = np.isfinite(contact_time)
-    shortest = np.min(contact_time, where=known, initial=np.inf)
-    longest = np.max(contact_time, where=known, initial=-np.inf)
+    shortest = float(np.min(contact_time, where=known, initial=np.inf))
+    longest = float(np.max(contact_time, where=known, initial=-np.inf))
     point: tuple[Any, ...] = ()
     if len(table) == 1:
         point = tuple((address, value) for address, value in zip(addresses, table[0], strict=True)
@@ -166,9 +169,7 @@ def _beyond_data(
         last = _examined.get(case)
         if last and (last.lines is None or last.point == point
                      and last.shortest <= shortest and longest <= last.longest):  # fmt: skip
-            return last.lines or ""
-    if _silent.get():
-        return ""
+            return (last.lines or "").strip("\n")
     text = c_void_p()
     with contextlib.suppress(Error):
         call("vcor_beyond_data", case._pointer, len(addresses),

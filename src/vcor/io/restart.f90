@@ -8,9 +8,9 @@
 !>     INDEX BITS BITS ... CHECK
 !>
 !> with the number of the point, the bits of each number of its outcome (`row_of`) as 16 hexadecimal
-!> digits, and the CRC-32 of the line up to there as 8, which every single wrong bit changes. The
-!> file is created exclusively, and only ever appended to. If the process is killed, or the disk is
-!> full, the last line may be incomplete; it is dropped. A line that is wrong in any other way is
+!> digits, and the CRC-32 of the line up to there in as many, which every single wrong bit changes.
+!> The file is created exclusively, and only ever appended to. If the process is killed, or the disk
+!> is full, the last line may be incomplete; it is dropped. A line that is wrong in any other way is
 !> refused with the whole file.
 module vcor_io_restart
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
@@ -43,8 +43,8 @@ module vcor_io_restart
       procedure :: close => close_restart
    end type restart_t
 
-   !> Digits of an index, of a number and of a check sum
-   integer, parameter :: index_width = 10, number_width = 16, check_width = 8
+   !> Digits of an index, and of a number or a check sum
+   integer, parameter :: index_width = 10, number_width = 16
    !> Columns that a point has if the bodies separated
    character(len=*), parameter :: known(*) = [character(len=12) :: 'cor', 'cor_sphere', &
       'contact_time']
@@ -338,7 +338,7 @@ contains
       flaw = 'it has the wrong check sum'
       k = len(line) - 1
       if (line(k + 1:) /= new_line('a')) return
-      if (line(k - check_width:k) /= check_of(line(:k - check_width - 1))) return
+      if (line(k - number_width:k) /= check_of(line(:k - number_width - 1))) return
       flaw = 'expected the bits of a point'
       read (line(:index_width), '(i10)', iostat=status) number
       if (status /= 0) return
@@ -414,8 +414,8 @@ contains
          end do
          k = k + 1 + number_width
       end do
-      line(k + 1:k + 1 + check_width) = check_of(line(:k))
-      line(k + 2 + check_width:) = new_line('a')
+      line(k + 1:k + 1 + number_width) = check_of(line(:k))
+      line(k + 2 + number_width:) = new_line('a')
    end subroutine write_line
 
    !> Length of the line of a point with its end [bytes]
@@ -424,16 +424,16 @@ contains
       integer, intent(in) :: numbers
       integer :: length
 
-      length = index_width + (1 + number_width)*numbers + 1 + check_width + 1
+      length = index_width + (1 + number_width)*(numbers + 1) + 1
    end function line_length
 
    !> End of the line of a point: a blank and its check sum
    pure function check_of(text) result(check)
       !> The line up to there
       character(len=*), intent(in) :: text
-      character(len=1 + check_width) :: check
+      character(len=1 + number_width) :: check
 
-      write (check, '(1x, z8.8)') crc32(text, 0_int32)
+      write (check, '(1x, z16.16)') iand(int(crc32(text, 0_int32), int64), 4294967295_int64)
    end function check_of
 
    !> First line
