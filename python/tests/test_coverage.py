@@ -150,10 +150,13 @@ def test_result_of_no_separation(height):
 
 def test_a_list_of_one_number_is_a_list():
     text = (PAPER / "sls.nml").read_text()
-    case = vcor.Case(text + """
-&material name = 'm', model = 'prony', density = 1.0, poisson_ratio = 0.3, equilibrium_modulus = 1.0,
-   moduli = 1e7, times = 1e-3 /
-""")
+    case = vcor.Case(
+        text
+        + """
+&material name = 'm', model = 'prony', density = 1.0, poisson_ratio = 0.3,
+   equilibrium_modulus = 1.0, moduli = 1e7, times = 1e-3 /
+"""
+    )
     assert case["m.moduli"] == [1e7] and case["m.times"] == [1e-3]
     assert case["m.moduli(1)"] == 1e7 and case["m.equilibrium_modulus"] == 1.0
     case["m.moduli"] = case["m.moduli"]

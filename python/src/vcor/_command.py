@@ -14,7 +14,15 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
-from ._library import DataRangeWarning, Error, FileError, UnitWarning, UsageError, __version__, printable
+from ._library import (
+    DataRangeWarning,
+    Error,
+    FileError,
+    UnitWarning,
+    UsageError,
+    __version__,
+    printable,
+)
 from ._text import OPTIONS, name_flaw, near
 
 FORMATS = ("svg", "pdf", "png")

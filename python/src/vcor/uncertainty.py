@@ -24,10 +24,10 @@ from ._library import (
     InputError,
     NumericalError,
     UsageError,
+    ValidityWarning,
     numbers,
     whole,
     within,
-    ValidityWarning,
 )
 from ._text import option
 from .case import MOST_POINTS, Case, as_case, listed, number, with_material

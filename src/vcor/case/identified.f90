@@ -5,9 +5,9 @@
 !> E(t) = E(valid_from) before it and E(valid_to) after it, the effect of the extrapolation on the
 !> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
 !> of exponentials would continue to grow before the band. A plate of any thickness has the change
-!> of the thin plate, a half space or a layer on a base that without waves. Where direct cannot solve
-!> this, as a layer that both bodies share without one material, method coupled solves both impacts
-!> with the mechanics of the case; it uses the modulus itself, too.
+!> of the thin plate, a half space or a layer on a base that without waves. Where direct cannot
+!> solve this, as a layer under a ball that deforms as well, method coupled solves both impacts with
+!> the mechanics of the case; it uses the modulus itself, too.
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t

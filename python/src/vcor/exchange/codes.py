@@ -31,9 +31,9 @@ from .._library import (
     NoResultWarning,
     NumericalError,
     UsageError,
+    ValidityWarning,
     numbers,
     whole,
-    ValidityWarning,
 )
 from ..case import Case, as_case, number, radius_of
 from .contact_laws import ACCURACY, LAWS, Twin
