@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _library
 from ._library import DataRangeWarning, Error, Floats, ValidityWarning, call
@@ -79,7 +80,7 @@ def with_judged(names: Sequence[str]) -> list[str]:
     return [*names, *_JUDGED]
 
 
-def validity_of(levels: Sequence[str], causes: Sequence[str]) -> str:
+def validity_of(levels: ArrayLike, causes: ArrayLike) -> str:
     """How many points are outside and caution, and by which measures.
 
     Parameters
