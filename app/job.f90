@@ -2,7 +2,7 @@
 module vcor_app_job
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : files_t, name_files
-   use vcor_app_screen, only : significant
+   use vcor_rounded, only : significant
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, key_t, real_key
    use vcor_case_checks, only : validate

@@ -93,7 +93,8 @@ int vcor_add_materials(vcor_case *self, const vcor_case *materials, vcor_error *
  * value as a namelist has it, a text also without quotes */
 int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);
 
-/* Value at an address as a namelist has it, given or by default; `*value` is NULL if there is none */
+/* Value at an address as a namelist has it, given or by default, a list of one number with a comma after it;
+ * `*value` is NULL if there is none */
 int vcor_get(const vcor_case *self, const char *address, char **value, vcor_error *error);
 
 /* Path, unit and meaning of an address */
@@ -137,6 +138,15 @@ int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, cons
  * of the values of n points, which are those of vcor_solve. `*text` is NULL if there is none. */
 int vcor_warnings(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                   char **text, vcor_error *error);
+
+/* What the data behind the materials do not say about n points that vcor_solve has solved: contacts that
+ * begin before the data of a fit (valid_from, valid_to) or of a table, or last longer, with the change of cor
+ * that depends on it, and temperatures outside of those of a shift. `statuses`, `contact_times` and `cors`
+ * are the columns status, contact_time and cor of the points. A line for each remark; `*text` is empty if the
+ * data say all that matters, and NULL if no material has data of a known range. Of a fit it solves up to four impacts more, while other calls wait. */
+int vcor_beyond_data(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
+                     const double *statuses, const double *contact_times, const double *cors,
+                     char **text, vcor_error *error);
 
 /* History of a single impact: `*rows` rows of the columns of VCOR_HISTORY. An impact that does not end
  * in separation has one, too. */

@@ -68,6 +68,11 @@ def arguments(case):
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "text": byref(text),
         },
+        "vcor_beyond_data": {
+            "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
+            "statuses": doubles(0.0), "contact_times": doubles(1e-3), "cors": doubles(0.5),
+            "text": byref(text),
+        },
         "vcor_history": {"case": case, "rows": byref(count), "values": byref(text)},
         "vcor_relaxation": {
             "case": case, "material": b"rubber", "n?": 1, "times": doubles(1.0),

@@ -14,7 +14,7 @@ module vcor_c_api
       report_error
    use vcor_case_address, only : resolve
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
-   use vcor_case_catalogue, only : catalogue, find_group
+   use vcor_case_catalogue, only : catalogue, find_group, list_key
    use vcor_case_checks, only : implausible_numbers, note_length, validate
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : case_text, value_text
@@ -176,6 +176,7 @@ contains
       type(error_t), allocatable :: trouble
       type(address_t) :: place
       type(entry_t) :: entry
+      character(len=:), allocatable :: written
 
       call put_pointer(value, c_null_ptr)
       call open_case(self, handle, trouble)
@@ -189,7 +190,12 @@ contains
          if (place%element > 0) then
             call put_copy(value, c_text(real_text(entry%number)), trouble)
          else if (entry%present) then
-            call put_copy(value, c_text(value_text(catalogue(place%row), entry)), trouble)
+            written = value_text(catalogue(place%row), entry)
+            ! a comma tells a list of one number from a number
+            if (catalogue(place%row)%value_kind == list_key) then
+               if (size(entry%list) == 1) written = written//','
+            end if
+            call put_copy(value, c_text(written), trouble)
          end if
       end if
 !$omp end critical (vcor_c_api)

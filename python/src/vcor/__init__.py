@@ -7,6 +7,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from ._library import (
+    DataRangeWarning,
     Error,
     FileError,
     InputError,
@@ -14,6 +15,7 @@ from ._library import (
     NumericalError,
     UnitWarning,
     UsageError,
+    ValidityWarning,
     __version__,
 )
 from .case import Case, Material, read
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Case",
+    "DataRangeWarning",
     "Error",
     "FileError",
     "Fit",
@@ -42,6 +45,7 @@ __all__ = [
     "NumericalError",
     "UnitWarning",
     "UsageError",
+    "ValidityWarning",
     "__version__",
     "bands",
     "card",
@@ -61,7 +65,8 @@ __all__ = [
 
 # Messages of the interpreter name an error as users import it
 for _kind in (
-    Error, FileError, InputError, NoResultWarning, NumericalError, UnitWarning, UsageError,
+    DataRangeWarning, Error, FileError, InputError, NoResultWarning, NumericalError, UnitWarning,
+    UsageError, ValidityWarning,
 ):  # fmt: skip
     _kind.__module__ = "vcor"
 

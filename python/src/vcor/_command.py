@@ -14,7 +14,15 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
-from ._library import Error, FileError, UnitWarning, UsageError, __version__, printable
+from ._library import (
+    DataRangeWarning,
+    Error,
+    FileError,
+    UnitWarning,
+    UsageError,
+    __version__,
+    printable,
+)
 from ._text import OPTIONS, name_flaw, near
 
 FORMATS = ("svg", "pdf", "png")
@@ -72,7 +80,7 @@ class Parser(argparse.ArgumentParser):
 
 def _note(message: Warning | str, category: type[Warning], *_: Any) -> None:
     """Write a warning on one line."""
-    kind = "warning" if issubclass(category, UnitWarning) else "note"
+    kind = "warning" if issubclass(category, (DataRangeWarning, UnitWarning)) else "note"
     sys.stderr.write(f"vcor: {kind}: {printable(str(message))}\n")
 
 

@@ -74,6 +74,14 @@ class UnitWarning(UserWarning):
     """A number looks like one in another unit."""
 
 
+class ValidityWarning(UserWarning):
+    """A result is outside of what the model is valid for, or near to that; docs/validity.md."""
+
+
+class DataRangeWarning(UserWarning):
+    """The data behind a material do not cover an impact: its contact time, or its temperature."""
+
+
 class _ErrorStruct(Structure):
     _fields_ = [("code", c_int), ("message", c_char * 2048)]
 
@@ -160,6 +168,9 @@ _ARGUMENTS: dict[str, list[Any]] = {
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],
     "vcor_warnings": [c_void_p, c_int, _texts, c_int, _doubles, POINTER(c_void_p)],
+    "vcor_beyond_data": [
+        c_void_p, c_int, _texts, c_int, _doubles, _doubles, _doubles, _doubles, POINTER(c_void_p),
+    ],
     "vcor_history": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],

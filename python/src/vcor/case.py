@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _library
+from . import _coverage, _library
 from ._library import (
     Error,
     Floats,
@@ -153,12 +153,15 @@ class Case:
     def add(self, materials: Case) -> None:
         """Complete the case by &material groups, whose data files stay where they are."""
         call("vcor_add_materials", self._pointer, materials._pointer)
+        _coverage.forget(self)
         self._added = [*self._added, (materials._text, materials._path)]
 
     def __setitem__(self, address: str, value: ArrayLike) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
         written = _written(value, address) if not isinstance(value, str) else value
         call("vcor_set", self._pointer, address, written)
+        if address not in _coverage.ONLY_FASTER:
+            _coverage.forget(self)
         self._settings = {**self._settings, address: written}
         # a text or a list may set what is known by another address, too
         if isinstance(value, float):
@@ -228,6 +231,9 @@ class Case:
         xarray.Dataset
             The summary, as in the files of the program: numbers of a single impact, or an array
             over the parameters that the case varies. `attrs["units"]` has the unit of each.
+            `attrs["validity"]` of the dataset is "good", or how many points are not and by which
+            measures, with a `ValidityWarning`; `attrs["beyond_data"]` has what the data behind the
+            materials do not cover, a line each, with a `DataRangeWarning`.
 
         Raises
         ------
@@ -241,19 +247,22 @@ class Case:
             return self.sweep(axes, threads=threads, progress=progress)
         self._warn({})
         names = list(_library.columns(0))
+        columns, point = _coverage.with_judged(names), np.empty((1, 0))
         try:
-            values, _ = self._solve([], np.empty((1, 0)), names, 1)
+            values, _ = self._solve([], point, columns, 1)
         except Error as error:
             if isinstance(error, NumericalError):
                 error.result = self._without_result(names)
             raise
-        return self._dataset(names, values, {})
+        made = self._dataset(names, values, {})
+        made.attrs |= _coverage.about(self, [], point, values)
+        return made
 
     def solve(
         self,
         values: Mapping[str, float] | None = None,
         quantities: Sequence[str] | None = None,
-    ) -> dict[str, float | str]:
+    ) -> _coverage.Numbers:
         """Solve one impact, for loops: plain numbers, less than 0.1 ms in addition to the solver.
 
         Parameters
@@ -266,7 +275,8 @@ class Case:
         Returns
         -------
         dict
-            Number of each quantity, in SI units; texts such as `status` as words.
+            Number of each quantity, in SI units; texts such as `status` as words. Its attributes
+            `validity` and `beyond_data` are those of the dataset of `run`, with the same warnings.
 
         Raises
         ------
@@ -278,6 +288,7 @@ class Case:
         columns = _library.columns(0)
         names = _names(quantities)
         # numbers that were set go in as those of a point: nothing is checked and built anew then
+        wanted = [*_coverage.with_judged(names), "status"]
         point = self._numbers if values is None else scalars(values)
         remark = ""
         if (addresses := tuple(point)) != self._looked_at:
@@ -286,7 +297,7 @@ class Case:
         if point:
             row = np.array([[*point.values()]])
             try:
-                found, remark = self._solve(list(point), row, [*names, "status"], 1)
+                found, remark = self._solve(list(point), row, wanted, 1)
             except Error:
                 if values is not None:
                     raise
@@ -295,9 +306,15 @@ class Case:
                 kind = InputError if found[0, -1] == _INVALID else NumericalError
                 raise kind(f"{self.name}: {_reason(remark)}")
         if not point or remark:
-            found, _ = self._solve([], np.empty((1, 0)), names, 1)
+            point = {}
+            found, _ = self._solve([], np.empty((1, 0)), wanted, 1)
         row = found[0].tolist()
-        return {name: columns[name].value(row[i]) for i, name in enumerate(names)}
+        made = _coverage.Numbers(
+            (name, columns[name].value(row[i])) for i, name in enumerate(names)
+        )
+        values_there = np.array([[*point.values()]])
+        vars(made).update(_coverage.about(self, list(point), values_there, found[:, :-1]))
+        return made
 
     def points(
         self,
@@ -321,7 +338,8 @@ class Case:
         Returns
         -------
         xarray.Dataset
-            The columns over the dimension `point`. A point without a result has nan and a `status`
+            The columns over the dimension `point`, with attributes and warnings as those of `run`.
+            A point without a result has nan and a `status`
             that says why; a `NoResultWarning` says how many there are. Ctrl-C ends the computation.
         """
         given = arrays(values)
@@ -334,11 +352,14 @@ class Case:
         columns = np.broadcast_arrays(*given.values())
         names = _names(quantities)
         table = np.stack(columns, axis=1)
-        results = self._solve_all(list(given), table, names, threads, progress)
+        wanted = _coverage.with_judged(names)
+        results = self._solve_all(list(given), table, wanted, threads, progress)
         coords = {
             address: ("point", column) for address, column in zip(values, columns, strict=True)
         }
-        return self._dataset(names, results, coords)
+        made = self._dataset(names, results, coords)
+        made.attrs |= _coverage.about(self, list(given), table, results)
+        return made
 
     def sweep(
         self,
@@ -372,9 +393,12 @@ class Case:
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
         names = _names(quantities)
-        results = self._solve_all(list(axes), table, names, threads, progress)
+        wanted = _coverage.with_judged(names)
+        results = self._solve_all(list(axes), table, wanted, threads, progress)
         coords = {address: (address, axis) for address, axis in axes.items()}
-        return self._dataset(names, results, coords)
+        made = self._dataset(names, results, coords)
+        made.attrs |= _coverage.about(self, list(axes), table, results)
+        return made
 
     def history(self) -> xr.Dataset:
         """History of a single impact.
@@ -383,7 +407,7 @@ class Case:
         -------
         xarray.Dataset
             Indentation, force and so on over `time`, as in the files of the program; also of an
-            impact that sticks or does not separate.
+            impact that sticks or does not separate. Attributes and warnings as those of `run`.
 
         Raises
         ------
@@ -402,7 +426,8 @@ class Case:
             for column, row in zip(columns, values, strict=True)
         }
         time_axis = variables.pop("time")
-        return _dataset(variables, {"time": time_axis}, self._attrs({}))
+        attrs = self._attrs({}) | _coverage.about_history(self)
+        return _dataset(variables, {"time": time_axis}, attrs)
 
     def plot(self, kind: str | None = None, **options: Any) -> Figure:
         """Solve the case and draw it; needs Matplotlib.
@@ -551,7 +576,7 @@ class Case:
                 columns[name].values(column).reshape(tuple(shape.values())),
                 columns[name].attrs,
             )
-            for name, column in zip(names, values.T, strict=True)
+            for name, column in zip(names, values.T[: len(names)], strict=True)
         }
         described = {
             address: (dim, axis, self._describe(address).attrs)
@@ -578,9 +603,11 @@ class Case:
 
     def _without_result(self, names: list[str]) -> xr.Dataset | None:
         """Summary of an impact without a result: nan, and the status."""
-        address = "impact.velocity"
-        point = np.array([[self[address]]], dtype=float)
-        values, _ = self._solve([address], point, names, 1)
+        values = np.full((1, len(names)), np.nan)
+        # the library says why, and leaves the status
+        with contextlib.suppress(NumericalError):
+            call("vcor_solve", self._pointer, 0, _library.texts(()), 1, np.empty((1, 0)),
+                 len(names), _library.texts(tuple(names)), values, 1)  # fmt: skip
         return self._dataset(names, values, {})
 
 
@@ -743,7 +770,8 @@ def _value(text: str) -> Value:
     if text in (".true.", ".false."):
         return text == ".true."
     numbers = [float(word) for word in text.replace(",", " ").split()]
-    if len(numbers) != 1:
+    # the library writes a list of one number with a comma
+    if "," in text or len(numbers) != 1:
         return numbers
     return int(text) if text.lstrip("+-").isdigit() else numbers[0]
 

@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 import xarray as xr
 
+from ._coverage import of_columns
 from ._library import Error, FileError, InputError
 
 #: How files of HDF5 begin
@@ -74,6 +75,7 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
                         f"{found}, expected the same of all")  # fmt: skip
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)
+    attrs |= of_columns(result.data_vars)
     return result.assign_attrs(attrs | dict(result.attrs))
 
 

@@ -16,6 +16,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from . import _library, _text
+from ._coverage import unwarned
 from ._differences import slopes
 from ._library import (
     MOST_SEED,
@@ -24,6 +25,7 @@ from ._library import (
     InputError,
     NumericalError,
     UsageError,
+    ValidityWarning,
     numbers,
     whole,
     within,
@@ -440,7 +442,8 @@ def propagate(
     sobol = _sobol(problem, values, names, seed)
     value = _values(case, quantities)
     errors = ["cor_error", "cor_sphere_error", "contact_time_error", "max_force_error"]
-    judged = case.solve(quantities=["validity", "validity_cause", "contact_time", *errors])
+    with unwarned(ValidityWarning):
+        judged = case.solve(quantities=["validity", "validity_cause", "contact_time", *errors])
     # with waves = 'body' what is not stated is not known
     better = np.full(len(value), np.nan)
     if case["plate.waves"] != "body":
@@ -613,7 +616,8 @@ def _has_thickness(case: Case) -> bool:
 
 
 def _values(case: Case, quantities: list[str]) -> Floats:
-    return np.array(list(case.solve(quantities=quantities).values()), dtype=float)
+    with unwarned():
+        return np.array(list(case.solve(quantities=quantities).values()), dtype=float)
 
 
 def _accurate(case: Case | str | os.PathLike[str]) -> Case:

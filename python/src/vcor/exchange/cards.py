@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import _command, _text
+from .._coverage import unwarned
 from .._library import InputError, NumericalError, UsageError, numbers, whole, within
 from .._text import option
 from ..case import MOST_POINTS, Case, number
@@ -127,7 +128,9 @@ def card(
                 impact, factor = case.copy(), 1.0
                 impact["impact.temperature"] = of("reference_temperature")
             try:
-                contact = float(impact.solve(quantities=["contact_time"])["contact_time"]) / factor
+                with unwarned():
+                    solved = impact.solve(quantities=["contact_time"])
+                contact = float(solved["contact_time"]) / factor
             except NumericalError as error:
                 raise UsageError(f"{error}; expected {option('band')} for the card") from None
             band = _BAND[0] * contact, _BAND[1] * contact

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from .. import _command
+from .._coverage import unwarned
 from .._library import Error, FileError, InputError, UsageError, __version__, printable
 from .._text import near, place, write
 from ..case import _written, number, read, with_material
@@ -58,7 +59,8 @@ class Sampled:
             self.case[address] = float(values[0])
         self.cor = self.contact_time = math.nan
         try:
-            found = self.case.solve(quantities=["cor", "contact_time"])
+            with unwarned():
+                found = self.case.solve(quantities=["cor", "contact_time"])
             self.cor, self.contact_time = float(found["cor"]), float(found["contact_time"])
         except Error as error:
             self.notes.append(f"the impact has no result ({error}): its window is not known")
@@ -134,7 +136,8 @@ class Sampled:
         group = group.rstrip("\n")
         case = with_material(self.case, self.name.replace(" ", "_"), lambda _: group)
         try:
-            found = float(case.solve(quantities=["cor"])["cor"])
+            with unwarned():
+                found = float(case.solve(quantities=["cor"])["cor"])
         except Error:
             return "  the impact of the case has no result with the fit"
         return (f"  cor of the impact   {self.cor:10.7f}  with the fit {found:10.7f}  difference "

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from .. import _library
-from .._library import Error, Floats, InputError, NoResultWarning
+from .._coverage import unwarned
+from .._library import Error, Floats, InputError, NoResultWarning, ValidityWarning
 from .._text import near
 from ..case import Case, arrays, number, radius_of
 from .data import curves, read_data, tensile
@@ -169,7 +170,7 @@ class Impacts:
 
     def validity(self, case: Case) -> list[tuple[str, str]]:
         """Whether the model holds, and the column that decides, of each impact."""
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), unwarned(ValidityWarning):
             warnings.simplefilter("ignore", NoResultWarning)
             found = case.points(self.settings, ["validity", "validity_cause"], progress=False)
         return [
@@ -264,7 +265,8 @@ class Record:
 
     def _force(self, case: Case) -> Floats:
         """The force from the start and on the baseline that fit best, by Gauss and Newton."""
-        history = case.history()
+        with unwarned():
+            history = case.history()
         times, forces = history["time"].values, history["force"].values
         course = CubicSpline(times, forces)
         slope = course.derivative()
