@@ -25,7 +25,9 @@ from .._differences import slopes
 from .._library import MOST_SEED, Error, Floats, NumericalError, UsageError, whole
 from .._outputs import finish
 from .._text import option
-from ..case import Case, as_case, listed, number, progress_bar, read, scalars, with_material
+from ..arguments import listed, namelists, scalars
+from ..case import Case, as_case, number, read, with_material
+from ..progress import progress_bar
 from .advice import next_measurement, not_determined, probe, product
 from .data import Columns, Units, add_data_options, columns_option
 from .fit import fit
@@ -473,12 +475,9 @@ def _with_model(
         for one in fit((times, moduli), model=kind, name=name).parameters:
             keys[one.name] = [one.value]
 
-    def other(old: re.Match[str]) -> str:
-        kept = [line for line in old[0].splitlines() if line.split("=")[0].strip() in KEPT]
-        rows = [f"   {key} = {', '.join(repr(float(x)) for x in row)}" for key, row in keys.items()]
-        return "\n".join(["&material", f"   model = '{kind}'", *kept, *rows, "/"])
-
-    changed = with_material(case, name, other)
+    kept = {key: case[f"{name}.{key}"] for key in KEPT}
+    group = {"model": kind, **{key: x for key, x in kept.items() if x is not None}, **keys}
+    changed = with_material(case, name, namelists({"material": group}))
     addresses = [
         f"{name}.{key}({i + 1})" if key in ("moduli", "times") else f"{name}.{key}"
         for key, row in keys.items()

@@ -17,7 +17,8 @@ from scipy.interpolate import CubicSpline
 from .. import _library
 from .._library import Error, Floats, InputError, NoResultWarning
 from .._text import near
-from ..case import Case, arrays, number, radius_of
+from ..arguments import arrays
+from ..case import Case, number, radius_of
 from .data import SAME_TEMPERATURE, curves, read_data, tensile
 from .tables import Choice
 
