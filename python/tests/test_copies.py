@@ -1,17 +1,18 @@
 """A case, its copies, its pickle, its text and its file are the same case after any settings."""
 
 import concurrent.futures
+import functools
 import multiprocessing
 import os
 import pickle
 import random
 import subprocess
 
-import numpy as np
 import pytest
 from conftest import PAPER
 
 import vcor
+from vcor.case import with_material, with_values
 
 #: Random sequences of settings
 COUNT = 2000 if "VCOR_ALL_TESTS" in os.environ else 50
@@ -37,7 +38,11 @@ PAIRS = {
     "sphere": (("radius", 0.005, 0.02), ("diameter", 0.01, 0.04)),
     "plate": (("half_thickness", 0.005, 0.05), ("thickness", 0.01, 0.1)),
 }
-SINGLE = (("sphere.mass", 0.01, 0.1), ("ball.density", 1e3, 1e4), ("rubber.poisson_ratio", 0.3, 0.5))
+SINGLE = (
+    ("sphere.mass", 0.01, 0.1),
+    ("ball.density", 1e3, 1e4),
+    ("rubber.poisson_ratio", 0.3, 0.5),
+)
 
 
 def begin(dice, folder):
@@ -134,6 +139,137 @@ def pool():
     context = multiprocessing.get_context("forkserver")
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as one:
         yield one
+
+
+def every_copy(case):
+    """A case, its copy and its pickle."""
+    return case, case.copy(), pickle.loads(pickle.dumps(case))
+
+
+def cors(case):
+    """Coefficients of restitution of a case and its copies."""
+    return [one.solve(quantities=["cor"])["cor"] for one in every_copy(case)]
+
+
+@pytest.mark.parametrize(("settings", "expected"), [
+    ({"impact.velocity": (1.0, 2.0), "impact.drop_height": (0.3,)}, {"impact.velocity": 2.0}),
+    ({"plate.half_thickness": (0.02, 0.01), "plate.thickness": (0.08,)},
+     {"plate.half_thickness": 0.01}),
+    ({"sphere.radius": (0.02, 0.01), "sphere.diameter": (0.03,)}, {"sphere.radius": 0.01}),
+])  # fmt: skip
+def test_the_last_of_two_keys_counts(sls, settings, expected):
+    (first, (before, after)), (other, (between,)) = settings.items()
+    for address, value in ((first, before), (other, between), (first, after)):
+        sls[address] = value
+    assert sls[other] is None
+    wanted = vcor.read(PAPER / "sls.nml")
+    for address, value in expected.items():
+        wanted[address] = value
+    assert set(cors(sls)) == {wanted.solve()["cor"]}
+
+
+def test_the_last_of_a_list_and_its_numbers_counts():
+    case = vcor.read(PAPER / "butyl_prony.nml")
+    case["butyl.moduli(2)"] = 5e7
+    case["butyl.moduli"] = [1e7, 2e7, 3e7]
+    case["butyl.moduli(2)"] = 4e7
+    assert all(one["butyl.moduli"] == [1e7, 4e7, 3e7] for one in every_copy(case))
+    assert len(set(cors(case))) == 1
+
+
+def test_materials_are_added_as_they_are(sls):
+    """With what was set of them; what is set of them later is theirs alone."""
+    text = str(sls)
+    bodies, rubber = text[: text.index("&material", 1)], text[text.rindex("&material") :]
+    steel = text[len(bodies) : text.rindex("&material")]
+    case, materials = vcor.Case(bodies + steel), vcor.Case(rubber, name="mats.nml")
+    materials["rubber.beta"] = 600.0
+    case.add(materials)
+    materials["rubber.beta"] = 900.0
+    sls["rubber.beta"] = 600.0
+    assert set(cors(case)) == {sls.solve()["cor"]}
+    cards = [vcor.card(one, "rubber") for one in (*every_copy(case), sls)]
+    assert all((one.times, one.moduli) == (cards[-1].times, cards[-1].moduli) for one in cards)
+    assert cards[-1].times == pytest.approx((1.0 / 600.0,))
+
+
+def test_a_case_holds_its_handle_alone(sls):
+    sls["impact.velocity"] = 2.0
+    sls["plate.waves"] = "none"
+    sls.solve({"rubber.beta": 1e3})
+    sls.run()
+    assert set(vars(sls)) == set(vars(sls.copy())) == {"_pointer"}
+
+
+@pytest.mark.parametrize(("address", "value"), [
+    ("rubber.beta", 1e-3), ("solver.volterra_coefficient", 2.0), ("rubber.shift", "wlf"),
+    ("rubber.model", "elastic"), ("sphere.shape", "cone"),
+])  # fmt: skip
+def test_a_copy_is_refused_as_the_case_is(sls, address, value):
+    """In the same line, with the place of the value."""
+    sls[address] = value
+    lines = set()
+    for one in every_copy(sls):
+        with pytest.raises(vcor.InputError) as caught:
+            one.solve()
+        lines.add(str(caught.value))
+    assert len(lines) == 1
+
+
+def test_lines_of_the_file_are_kept(tmp_path):
+    text = (PAPER / "sls.nml").read_text().replace("beta    = 1200.0", "beta    = 1.0")
+    (tmp_path / "c.nml").write_text(text)
+    line = next(i for i, row in enumerate(text.splitlines(), 1) if "alpha   =" in row)
+    for one in every_copy(vcor.read(tmp_path / "c.nml")):
+        with pytest.raises(vcor.InputError, match=rf"c\.nml:{line}: found alpha"):
+            one.solve()
+
+
+def test_a_dump_of_something_else_is_refused(tmp_path, monkeypatch):
+    (tmp_path / "points.csv").write_text(POINTS)
+    rubber = MATERIALS[1]
+    keys = {"impact": "velocity = 1.0", "sphere": "radius = 0.01", "plate": "thickness = 0.02"}
+    (tmp_path / "c.nml").write_text(BASE.format(**keys, mats=STEEL + rubber, sweep=""))
+    case = vcor.read(tmp_path / "c.nml")
+    make, (dump,) = case.__reduce__()
+    assert repr(make(dump).solve()) == repr(case.solve())
+    other = dump.replace(vcor.__version__.encode(), b"0.9.0", 1)
+    refused = {
+        other: r"by vcor 0\.9\.0, expected one by vcor",
+        dump.replace(b"velocity = 1.0", b"velocity = 3.0"): "damaged",
+        dump[:-5]: "damaged",
+        b"": "expected a dump",
+        b"&impact velocity = 1.0 /\n": "expected a dump",
+    }
+    for data, words in refused.items():
+        with pytest.raises(vcor.InputError, match=words):
+            make(data)
+    points = tmp_path / "points.csv"
+    other_points = functools.partial(points.write_text, POINTS.replace("6e6", "7e6"))
+    for change in (points.unlink, other_points):
+        change()
+        with pytest.raises(vcor.InputError, match=r"points\.csv: it is not the file"):
+            make(dump)
+    points.write_text(POINTS)
+    monkeypatch.chdir(tmp_path.parent)
+    assert repr(make(dump).solve()) == repr(case.solve())
+
+
+def test_materials_and_sweeps_are_replaced_in_a_copy():
+    case = vcor.read(PAPER.parent / "sweeps" / "sls_velocity.nml")
+    name = case["plate.material"].replace(" ", "_")
+    single = with_values(case, {"impact.velocity": 2.0})
+    assert case._axes() and not single._axes() and single["impact.velocity"] == 2.0
+    group = f"&material name = '{name}', model = 'elastic', modulus = 1e7, density = 1e3, " \
+            "poisson_ratio = 0.3 /"  # fmt: skip
+    made = with_material(single, name, group)
+    assert made[f"{name}.model"] == "elastic" and case[f"{name}.model"] == "sls"
+    order = [text.split("'")[1] for text in str(made).split("&material")[1:]]
+    assert order == [text.split("'")[1] for text in str(case).split("&material")[1:]]
+    with pytest.raises(vcor.UsageError, match="nobody"):
+        with_material(case, "nobody", group)
+    with pytest.raises(vcor.InputError, match="found 2 &material groups"):
+        with_material(case, name, group + group)
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -378,7 +378,6 @@ contains
                if (all(handle%looked_at == places)) return
             end if
          end if
-         handle%looked_at = places
       end if
       if (size(addresses) == 0) then
          call build_own(handle, sweep, is_own, error)
@@ -386,6 +385,7 @@ contains
          call build_points(handle, places, values, sweep, error, addresses)
       end if
       if (allocated(error)) return
+      if (size(values, 2) <= 1) handle%looked_at = places
       call implausible_numbers(sweep%case, sweep%grid, found)
       if (.not. allocated(handle%told)) allocate (handle%told(0))
       do i = 1, size(found)
