@@ -247,7 +247,9 @@ def _forget_worker() -> None:
 
 os.register_at_fork(after_in_child=_forget_worker)
 #: Functions that end at once
-_QUICK = ("vcor_copy", "vcor_name", "vcor_set", "vcor_get", "vcor_describe")
+_QUICK = (
+    "vcor_copy", "vcor_dump", "vcor_load", "vcor_name", "vcor_set", "vcor_get", "vcor_describe",
+)  # fmt: skip
 #: Functions of a material, a microsecond a number at most, and for how many they end at once
 _MODULI, _FEW = ("vcor_relaxation", "vcor_complex_modulus"), 100_000
 

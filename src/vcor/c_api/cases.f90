@@ -1,8 +1,10 @@
-!> The C interface: cases are made, copied, changed and written; include/vcor.h documents its functions
+!> The C interface: cases are made, copied, changed and written; include/vcor.h documents its
+!> functions
 !>
 !> Texts are handled in the critical section `vcor_c_api`, see `vcor_c_api`.
 module vcor_c_api_cases
-   use, intrinsic :: iso_c_binding, only : c_associated, c_f_pointer, c_int, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_associated, c_f_pointer, c_int, c_loc, c_null_ptr, &
+      c_ptr
    use vcor_c_api_handle, only : find_place, follow, forget, handle_t, note, open_case, whole_folder
    use vcor_c_api_values, only : c_column_t, c_text, demand, new_column, put_column, put_copy, &
       put_pointer, refuse_long, report_error
@@ -201,11 +203,11 @@ contains
          end if
       end if
       if (.not. allocated(trouble)) then
-         if (other%case%count('material') == 1) then
-            call take_materials(handle, other, trouble, place%item)
-         else
+         if (other%case%is_materials() .and. other%case%count('material') > 1) then
             call raise(trouble, error_input, printable(other%case%source)//': found ' &
                //integer_text(other%case%count('material'))//' &material groups, expected one')
+         else
+            call take_materials(handle, other, trouble, place%item)
          end if
       end if
 !$omp end critical (vcor_c_api)

@@ -33,8 +33,8 @@ module vcor_c_api_handle
       type(case_t) :: case
       !> Folder where the process was when the case was read
       character(len=:), allocatable :: place
-      !> Numbers that were set since anything else was, shape (n): the case is solved as a point with
-      !> values at these addresses, so that setting them again does not build everything anew
+      !> Numbers that were set since anything else was, shape (n): the case is solved as a point
+      !> with values at these addresses, so that setting them again does not build everything anew
       type(address_t), allocatable :: tuned(:)
       !> Addresses of the last single point that was looked at for implausible numbers; unallocated:
       !> none
@@ -293,8 +293,8 @@ contains
       end do
    end subroutine build_points
 
-   !> Build the impact of the case as a point with the numbers that were set, or the case as it is if
-   !> there are none or they make no point
+   !> Build the impact of the case as a point with the numbers that were set, or the case as it is
+   !> if there are none or they make no point
    subroutine build_own(handle, sweep, is_point, error)
       !> The case
       type(handle_t), intent(inout) :: handle
