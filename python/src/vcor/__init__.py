@@ -18,9 +18,12 @@ from ._library import (
     ValidityWarning,
     __version__,
 )
-from .case import Case, Material, read
+from .case import Case, read
+from .material import Material
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from .exchange.cards import card, read_card
     from .exchange.codes import pair
     from .exchange.export import export
@@ -69,6 +72,24 @@ for _kind in (
     UsageError, ValidityWarning,
 ):  # fmt: skip
     _kind.__module__ = "vcor"
+
+
+def _plot(self: Case, kind: str | None = None, **options: Any) -> "Figure":
+    """Solve the case and draw it; needs Matplotlib.
+
+    Parameters
+    ----------
+    kind
+        "history" or "loop", of a case with &sweep groups "sweep" or "map"; None: the first that
+        fits.
+    options
+        Those of `vcor.plot.figure`.
+    """
+    made: Figure = importlib.import_module("vcor.plot").figure(self, kind=kind, **options)
+    return made
+
+
+Case.plot = _plot
 
 #: What needs scipy or reads files, by its module; imported when it is used
 _LATER = {

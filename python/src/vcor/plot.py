@@ -34,7 +34,8 @@ from . import _command, _text
 from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, printable, whole
 from ._text import command, option
-from .case import Case, listed
+from .arguments import listed
+from .case import Case
 from .materials.data import (
     Columns,
     Units,

@@ -31,7 +31,8 @@ from ._library import (
     within,
 )
 from ._text import option
-from .case import MOST_POINTS, Case, as_case, listed, number, with_material
+from .arguments import MOST_POINTS, listed
+from .case import Case, as_case, number, with_material
 from .materials.advice import percent, product
 from .materials.limits import UNDETERMINED
 from .materials.observations import sharpen
@@ -547,8 +548,7 @@ def _checked(case: Case | str | os.PathLike[str], quantities: Sequence[str]) -> 
 def _with_group(case: Case, fit: _Fit) -> Case:
     """The case with the group of a fit in the place of its own material, whose density stays."""
     density = case[f"{fit.name}.density"]
-    case = with_material(case, fit.name, lambda _: "")
-    case.add(Case(fit.group, name=fit.path or "fit.json"))
+    case = with_material(case, fit.name, fit.group, fit.path or "fit.json")
     if density is not None and case[f"{fit.name}.density"] is None:
         case[f"{fit.name}.density"] = density
     return case

@@ -3,8 +3,10 @@
 module vcor_c_api_coverage
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_null_ptr, c_ptr
-   use vcor_c_api_handle, only : build_points, handle_t, open_case, open_points
+   use vcor_c_api_handle, only : build_own, build_points, find_places, &
+      handle_t, open_case, open_points
    use vcor_c_api_values, only : c_text, demand, get_array, put_copy, put_pointer, report_error
+   use vcor_case_case, only : address_t
    use vcor_error, only : error_t, error_usage, raise
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_coverage, only : find_remarks, has_data, outcomes_t, remark_length
@@ -31,10 +33,12 @@ contains
       type(c_ptr), pointer :: addresses(:)
       real(c_double), pointer :: values(:, :), status(:), contact_time(:), cor(:)
       type(sweep_t) :: sweep
+      type(address_t), allocatable :: places(:)
       type(outcomes_t) :: outcomes
       character(len=remark_length), allocatable :: remarks(:)
       character(len=:), allocatable :: lines
       integer :: i
+      logical :: is_point
 
       call put_pointer(text, c_null_ptr)
       call open_case(self, handle, trouble)
@@ -55,7 +59,13 @@ contains
             .and. ieee_is_finite(cor)
          where (outcomes%known) outcomes%known = nint(status) == contact_separated
 !$omp critical (vcor_c_api)
-         call build_points(handle, addresses, values, sweep, trouble)
+         if (m == 0) then
+            call build_own(handle, sweep, is_point, trouble)
+         else
+            call find_places(handle%case, addresses, places, trouble)
+            if (.not. allocated(trouble)) &
+               call build_points(handle, places, values, sweep, trouble, addresses)
+         end if
          if (.not. allocated(trouble)) then
             call find_remarks(sweep%case, sweep%grid, outcomes, .true., remarks)
             lines = ''

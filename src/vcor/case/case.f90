@@ -77,14 +77,16 @@ module vcor_case_case
    type :: case_t
       !> Name of the case file, for messages
       character(len=:), allocatable :: source
+      !> Folder of its data files, with a slash at its end; unallocated: that of `source`
+      character(len=:), allocatable :: folder
       !> Items by group
       type(items_t), allocatable, private :: group(:)
       !> Number of changes so far
       integer, private :: changes = 0
    contains
-      procedure :: start, add, adopt, is_materials, source_of, latest_change, model, find_material
-      procedure :: material_of, address, path, row, number, given, unset, oust, refuse
-      procedure :: has_thickness, has_second_sphere
+      procedure :: start, add, adopt, clear, is_materials, source_of, latest_change, model
+      procedure :: find_material, material_of, address, path, row, number, given, unset, oust
+      procedure :: trace, trace_item, refuse, has_thickness, has_second_sphere
       procedure :: count => count_items
       procedure :: line => line_of_item
       procedure :: entry => entry_at
@@ -122,6 +124,7 @@ contains
       integer :: g, mark
 
       self%source = source
+      if (allocated(self%folder)) deallocate (self%folder)
       if (allocated(self%group)) deallocate (self%group)
       allocate (self%group(size(groups)))
       do g = 1, size(groups)
@@ -202,21 +205,37 @@ contains
       end associate
    end subroutine add
 
-   !> Add a material of another case; it keeps its file and its lines
-   pure subroutine adopt(self, other, item)
+   !> Add a material of another case, or put it in the place of one; it keeps its file and its
+   !> lines
+   pure subroutine adopt(self, other, item, place)
       class(case_t), intent(inout) :: self
       class(case_t), intent(in) :: other
       !> Index of the material in the other case
       integer, intent(in) :: item
+      !> Index of the material that it replaces; absent: none
+      integer, intent(in), optional :: place
 
       integer :: group, own
 
       group = find_group('material')
-      call self%add(group, 0, own)
+      if (present(place)) then
+         own = place
+      else
+         call self%add(group, 0, own)
+      end if
       self%group(group)%item(own) = other%group(group)%item(item)
-      self%group(group)%item(own)%source = other%source
+      self%group(group)%item(own)%source = other%source_of(item)
       self%changes = max(self%changes, other%changes)
    end subroutine adopt
+
+   !> Remove all items of a group that may be repeated
+   pure subroutine clear(self, group)
+      class(case_t), intent(inout) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+
+      self%group(group)%n = 0
+   end subroutine clear
 
    !> Whether the case has materials only
    pure function is_materials(self) result(yes)
@@ -699,6 +718,41 @@ contains
          if (entry%given .and. (always .or. .not. allocated(entry%origin))) call self%unset(other)
       end do
    end subroutine oust
+
+   !> State where the value at an address comes from
+   pure subroutine trace(self, address, line, origin)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
+      !> Line of the case file; 0 if it is not there
+      integer, intent(in) :: line
+      !> Origin if it is not the case file; otherwise empty
+      character(len=*), intent(in) :: origin
+
+      associate (entry => self%group(address%group)%item(address%item)%entry(address%row))
+         entry%line = line
+         if (allocated(entry%origin)) deallocate (entry%origin)
+         if (origin /= '') entry%origin = origin
+      end associate
+   end subroutine trace
+
+   !> State where an item of a group comes from
+   pure subroutine trace_item(self, group, item, line, source)
+      class(case_t), intent(inout) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Index of the item
+      integer, intent(in) :: item
+      !> First line of the group in its file; 0 if it is not there
+      integer, intent(in) :: line
+      !> Its file
+      character(len=*), intent(in) :: source
+
+      associate (place => self%group(group)%item(item))
+         place%line = line
+         if (allocated(place%source)) deallocate (place%source)
+         if (source /= self%source) place%source = source
+      end associate
+   end subroutine trace_item
 
    !> Raise an error about a key
    pure subroutine refuse(self, group, key, item, message, error)

@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from .._library import InputError, UsageError, printable
 from .._text import option
-from ..case import _written
+from ..arguments import written
 from ..materials.units import GAS
 
 #: Sizes of the units of length, mass and time [m], [kg], [s]
@@ -147,7 +147,7 @@ class Card:
             "moduli": self.moduli, "times": self.times, **self.shift,
         }  # fmt: skip
         given = {key: _rounded(value) for key, value in keys.items() if value is not None}
-        rows = [f"   {key} = {_written(value, key)}" for key, value in given.items()]
+        rows = [f"   {key} = {written(value, key)}" for key, value in given.items()]
         # only lists of numbers are wrapped: a text is one line
         body = [line for row in rows for line in ([row] if "'" in row else
                 textwrap.wrap(row, 98, subsequent_indent=" " * 6))]  # fmt: skip

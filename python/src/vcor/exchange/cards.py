@@ -15,7 +15,8 @@ from .. import _command, _text
 from .._coverage import unwarned
 from .._library import InputError, NumericalError, UsageError, numbers, whole, within
 from .._text import option
-from ..case import MOST_POINTS, Case, number
+from ..arguments import MOST_POINTS
+from ..case import Case, number
 from ..sources import IMPACT, material_case
 from .card_formats import FORMATS, UNITS, Card, Source, Terms, head_of
 

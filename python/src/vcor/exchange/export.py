@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 
 from .. import _command
 from .._library import UsageError
-from ..case import Case, as_case, listed, read_cases
+from ..arguments import listed
+from ..case import Case, as_case, read_cases
 from .codes import MEANING, TARGETS, Export, export_pair
 from .mixture import Mixture, export_mixture
 

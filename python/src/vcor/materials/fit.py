@@ -17,7 +17,9 @@ from numpy.typing import ArrayLike
 
 from .._library import Error, Floats, InputError, UsageError, numbers, printable, whole, within
 from .._text import command, document, near, option
-from ..case import Case, Material, _written, scalars
+from ..arguments import scalars, written
+from ..case import Case
+from ..material import Material
 from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
 from .master import curve_of, of_curves
@@ -421,7 +423,7 @@ def group_of(
         keys[one.name] = [*keys.get(one.name, []), one.rounded] if one.term else one.rounded
     ends = {"valid_from": samples.first_time, "valid_to": samples.last_time}
     keys |= {key: float(f"{time:.{LEAST_DIGITS}g}") for key, time in ends.items()}
-    quoted = _written(name, "name")
+    quoted = written(name, "name")
     try:
         case = Case(_CASE.format(quoted) + f"&material name = {quoted} /\n")
     except Error as error:
@@ -440,7 +442,7 @@ def _lines(keys: Mapping[str, Any], model: str) -> Iterator[str]:
         if not isinstance(value, str):
             # no data are known better
             value = [float(f"{x:.7e}") for x in np.atleast_1d(value)]
-        text = f"   {key} = {_written(value, key)}"
+        text = f"   {key} = {written(value, key)}"
         if key in ("moduli", "times"):
             text = textwrap.fill(text, 96, subsequent_indent=" " * (len(key) + 6))
         about = case._describe(f"m.{key}")

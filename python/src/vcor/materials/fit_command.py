@@ -18,7 +18,8 @@ from .. import _command
 from .._coverage import unwarned
 from .._library import Error, FileError, InputError, UsageError, __version__, printable
 from .._text import near, place, write
-from ..case import _written, number, read, with_material
+from ..arguments import written
+from ..case import number, read, with_material
 from .data import add_data_options, columns_option, read_data
 from .fit import (
     MODELS,
@@ -125,7 +126,7 @@ class Sampled:
         """The coefficient of restitution of the case with the material, and with the fit."""
         if not math.isfinite(self.cor):
             return ""
-        name = f"   name = {_written(self.value('name'), 'name')}"
+        name = f"   name = {written(self.value('name'), 'name')}"
         group = re.sub(r"(?m)^   name = .*$", lambda _: name, fit.group, count=1)
         if self.value("shift") is not None:
             # the fit is at the temperature of the impact
@@ -133,8 +134,7 @@ class Sampled:
             kelvin = kelvin if kelvin > 0 else float(self.value("reference_temperature"))
             group = group.replace("\n/", "\n   shift = 'arrhenius'\n   activation_energy = 1.0\n   "
                                   f"reference_temperature = {kelvin!r}\n/")  # fmt: skip
-        group = group.rstrip("\n")
-        case = with_material(self.case, self.name.replace(" ", "_"), lambda _: group)
+        case = with_material(self.case, self.name.replace(" ", "_"), group)
         try:
             with unwarned():
                 found = float(case.solve(quantities=["cor"])["cor"])

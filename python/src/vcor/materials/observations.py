@@ -18,7 +18,8 @@ from .. import _library
 from .._coverage import unwarned
 from .._library import Error, Floats, InputError, NoResultWarning, ValidityWarning
 from .._text import near
-from ..case import Case, arrays, number, radius_of
+from ..arguments import arrays
+from ..case import Case, number, radius_of
 from .data import curves, read_data, tensile
 from .names import COMPUTED
 from .reader import SAME_TEMPERATURE
