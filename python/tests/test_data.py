@@ -677,3 +677,117 @@ def test_the_tables_of_the_page(tmp_path):
     assert len(names) > 60
     for name in names:
         assert read_head(name).name, name
+
+
+# --------------------------------------------------------------------- what is ordinary is read
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t", "   "])
+@pytest.mark.parametrize("letter", "EG")
+@pytest.mark.parametrize("units", [True, False])
+def test_a_straight_double_quote(tmp_path, mark, letter, units):
+    """The name stands alone, with a unit below it or in the same cell."""
+    size = 1e6 if units else 1
+    head = mark.join(["f", f"{letter}'", f'{letter}"']) + "\n"
+    head += mark.join(["[Hz]", "[MPa]", "[MPa]"]) * units + "\n"
+    is_the_material(read(tmp_path, table(HERTZ, STORAGE / size, LOSS / size, head=head, mark=mark)))
+    head = mark.join(["t [s]", "f [Hz]", f"{letter}' [Pa]", f'{letter}"[Pa]']) + "\n"
+    data = read(tmp_path, table(OMEGA, HERTZ, STORAGE, LOSS, head=head, mark=mark))
+    is_the_material(data)
+    assert data.attrs["taken"].endswith("; not taken: t [s]")
+    assert data.attrs["shear"] is (letter == "G")
+
+
+def test_cells_in_quotes(tmp_path):
+    for head in ('"f [Hz]","E\' [Pa]","E"" [Pa]"\n', '"f [Hz]","E\' [Pa]","E\'\' [Pa]"\n'):
+        is_the_material(read(tmp_path, table(HERTZ, STORAGE, LOSS, head=head)))
+    assert read_head('"E"').name == "relaxation_modulus"
+
+
+@pytest.mark.parametrize(("first", "second", "factor"), [
+    ("omega [rad/s]", "f [Hz]", 2 * np.pi), ("f [Hz]", "f [kHz]", 1000.0),
+])  # fmt: skip
+@pytest.mark.parametrize("digits", [3, 4, 5, 6])
+def test_two_columns_that_are_rounded_each(tmp_path, first, second, factor, digits):
+    """They differ by the sum of half a unit of both at most."""
+    hertz = np.geomspace(0.1, 25, 60)
+    columns = [hertz * factor, hertz, 1e6 * (1 + hertz), 1e5 * (1 + hertz)]
+    text = table(*columns, head=f"{first},{second},E' [Pa],E'' [Pa]\n", digits=digits)
+    assert len(read(tmp_path, text)) == 60
+    columns[1] = hertz * (1 + 3 * 10.0**-digits * 10)
+    text = table(*columns, head=f"{first},{second},E' [Pa],E'' [Pa]\n", digits=digits)
+    refused(tmp_path, text, "two columns of frequency")
+
+
+@pytest.mark.parametrize(("units", "factor", "kind"), [
+    (("s", "min"), 60.0, "t"), (("m/s", "km/h"), 1 / 3.6, "v"), (("m/s", "mph"), 0.44704, "v"),
+    (("cm", "in"), 2.54, "h0"),
+])  # fmt: skip
+def test_other_columns_that_are_rounded_each(tmp_path, units, factor, kind):
+    values = np.geomspace(0.3, 70, 40)
+    more, name = (np.linspace(0.9, 0.5, 40), "cor") if kind != "t" else (1e6 / values, "E [Pa]")
+    head = f"{kind} [{units[0]}],{kind} [{units[1]}],{name}\n"
+    for digits in (3, 4, 6):
+        assert len(read(tmp_path, table(factor * values, values, more, head=head, digits=digits)))
+
+
+def test_the_dynamic_modulus_is_the_complex_one(tmp_path):
+    for name in ("Dynamic modulus [Pa]", "dynamic_modulus_pa", "Dynamic shear modulus [Pa]"):
+        text = table(HERTZ, np.hypot(STORAGE, LOSS), LOSS / STORAGE, head=f"f [Hz],{name},tan d\n")
+        data = read(tmp_path, text)
+        is_the_material(data)
+        assert "complex_modulus from " in data.attrs["taken"]
+
+
+@pytest.mark.parametrize(("key", "names"), {
+    "cor": ["e_n", "eN", "en", "ε", "C.O.R.", "COR", "CoR", "C_R", "normal COR", "cor_n",
+            "mean cor", "average COR"],
+    "rebound_height": ["height of bounce [m]", "height after bounce [m]", "h_bounce [m]", "h_f [m]",
+                       "final height [m]", "Average rebound height [m]",
+                       "rebound height (avg) [m]"],
+    "rebound_velocity": ["exit speed [m/s]", "v_f [m/s]", "final velocity [m/s]",
+                         "mean rebound velocity [m/s]"],
+}.items())  # fmt: skip
+def test_names_in_use(tmp_path, key, names):
+    for name in names:
+        data = read(tmp_path, f"v_n [m/s],{name}\n2,0.8\n3,0.7\n")
+        assert tuple(data) == ("velocity", key) and list(data[key]) == [0.8, 0.7]
+
+
+def test_an_index_is_no_unit(tmp_path):
+    for name in ("e_s", "e_m", "v_g", "cor_s"):
+        assert not read_head(name).name
+        refused(tmp_path, f"velocity [m/s],{name}\n2,0.8\n", f"'{name}'")
+    assert (read_head("t_ms").name, read_head("t_ms").unit) == ("time", "ms")
+
+
+FAILED = ["---", "NaN", "nan", "", "n/a", "--", "null"]
+
+
+@pytest.mark.parametrize("cell", FAILED)
+@pytest.mark.parametrize("column", [1, 2])
+def test_a_failed_point(tmp_path, cell, column):
+    """It is left out and named; the others are read."""
+    lines = table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n").splitlines()
+    cells = lines[4].split(",")
+    cells[column] = cell
+    data = read(tmp_path, "\n".join([*lines[:4], ",".join(cells), *lines[5:]]))
+    assert np.allclose(data.storage_modulus, np.delete(STORAGE, 3))
+    assert np.allclose(data.loss_modulus, np.delete(LOSS, 3))
+    said = f"'{cell}' in" if cell else "nothing in"
+    assert f"; 1 failed point left out: line 5 ({said} 'E'" in data.attrs["taken"]
+
+
+def test_failed_points_of_other_data(tmp_path):
+    data = read(tmp_path, "t [s];E [Pa]\n1;5\n2;---\n3;4\n4;\n5;3\n")
+    assert list(data.time) == [1, 3, 5]
+    assert (
+        "; 2 failed points left out: line 3 ('---' in 'E [Pa]'), line 5 (nothing in"
+        in (data.attrs["taken"])
+    )
+    data = read(tmp_path, "T [C],log10 a_T\n20,0\n30,---\n40,-2\n")
+    assert len(data) == 2
+    # what is no failed point, and half of the points
+    refused(tmp_path, "t [s],E [Pa]\n1,5\n2,abc\n3,4\n", ":3:", "'abc'")
+    refused(tmp_path, "t [s],E [Pa]\n1,5\n2,-4\n3,4\n", ":3:", "-4")
+    refused(tmp_path, "t [s],E [Pa]\n1,5\n2,\n", ":3:", "no number")

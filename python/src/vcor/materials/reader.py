@@ -77,6 +77,8 @@ class Reader:
         #: By column: the unit of its last digit in SI units, and its most significant digits
         self.digits: dict[str, tuple[float, int]] = {}
         self.left: list[str] = []
+        #: Points that were left out, and why
+        self.failed: list[str] = []
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
         #: Temperatures that are stated, but not sure
@@ -280,6 +282,8 @@ class Reader:
         rows = [row for row in rows if not all(is_missing(one.cell(row)) for one in group.values())]
         if not rows:
             return None
+        if self.whole and kind in ("dynamic", "relaxation", "shift"):
+            rows = self._measured(rows, group)
         values: dict[str, Floats] = {}
         for key, column in group.items():
             name = "time" if key == "run_time" else key
@@ -299,6 +303,25 @@ class Reader:
         if self.whole and kind in ("dynamic", "relaxation", "shift"):
             self._positive(frame, kind)
         return frame
+
+    def _measured(self, rows: list[Row], group: dict[str, Column]) -> list[Row]:
+        """Rows without those of failed points, as long as these are the fewer ones."""
+        columns = [one for key, one in group.items() if key not in ("temperature", "set")]
+        failed = [
+            (row, next(one for one in columns if is_missing(one.cell(row))))
+            for row in rows
+            if any(is_missing(one.cell(row)) for one in columns)
+        ]
+        if 2 * len(failed) >= len(rows):
+            return rows
+        self.failed += [
+            f"line {row.line} ('{cell}' in '{one.head.text.strip()}')"
+            if (cell := one.cell(row))
+            else f"line {row.line} (nothing in '{one.head.text.strip()}')"
+            for row, one in failed
+        ]
+        lost = {row.line for row, _ in failed}
+        return [row for row in rows if row.line not in lost]
 
     def _numbers(
         self, rows: Sequence[Row], column: Column, unit: str, name: str, kind: str
@@ -712,6 +735,11 @@ class Reader:
             line += f"; {sets}"
         if self.comma:
             line += "; with decimal commas"
+        if self.failed:
+            n = len(self.failed)
+            more = f" and {n - 4} more" if n > 4 else ""
+            line += f"; {n} failed point{'s' * (n > 1)} left out: "
+            line += f"{', '.join(self.failed[:4])}{more}"
         if self.left:
             more = f" and {len(self.left) - 8} more" if len(self.left) > 8 else ""
             line += f"; not taken: {', '.join(self.left[:8])}{more}"

@@ -487,8 +487,10 @@ def _same(table: Table, one: Column, other: Column) -> bool:
         if not all(map(is_number, cells)):
             return False
         values = [number(c) * s[0] + s[1] for c, s in zip(cells, scales, strict=True)]
-        slack = max(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
-        if abs(values[0] - values[1]) > 1.01 * slack + 1e-12 * abs(values[0]):
+        # each is rounded for itself
+        slack = sum(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
+        # at the sum itself only ties are rounded apart, such as 2.5 to 2 and 3
+        if abs(values[0] - values[1]) > max((1 - 1e-9) * slack, 1e-12 * abs(values[0])):
             return False
     return True
 
