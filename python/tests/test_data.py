@@ -300,7 +300,7 @@ def test_columns_of_different_lengths(tmp_path):
 def test_two_sweeps_that_cannot_be_separated(tmp_path):
     text = table(HERTZ, STORAGE, LOSS, head="f [Hz],E' [Pa],E'' [Pa]\n")
     data = read(tmp_path, text + table(HERTZ, STORAGE / 2, LOSS / 2))
-    with pytest.raises(vcor.InputError, match="data.csv:9: found a frequency"):
+    with pytest.raises(vcor.InputError, match=r"data.csv:9: found a frequency.*less than 22 %"):
         curves(data)
     two = "f [Hz],E' [Pa],E'' [Pa],f [Hz],E' [Pa],E'' [Pa]\n"
     refused(tmp_path, table(HERTZ, STORAGE, LOSS, HERTZ, STORAGE / 2, LOSS / 2, head=two),
@@ -791,3 +791,142 @@ def test_failed_points_of_other_data(tmp_path):
     refused(tmp_path, "t [s],E [Pa]\n1,5\n2,abc\n3,4\n", ":3:", "'abc'")
     refused(tmp_path, "t [s],E [Pa]\n1,5\n2,-4\n3,4\n", ":3:", "-4")
     refused(tmp_path, "t [s],E [Pa]\n1,5\n2,\n", ":3:", "no number")
+
+
+# ------------------------------------------------------------------------------- replicates
+
+RUNS = {
+    "one below the other": lambda f: np.tile(f, 3),
+    "up and down": lambda f: np.concatenate([f, f[::-1], f]),
+    "up and down, the end once": lambda f: np.concatenate([f, f[-2::-1], f[1:]]),
+    "three readings at each": lambda f: np.repeat(f, 3),
+    "grids of their own": lambda f: np.concatenate([f, 1.1 * f, 0.9 * f]),
+    "falling": lambda f: np.tile(f[::-1], 3),
+}
+
+
+def moduli_at(omega, scatter=0.01, seed=1):
+    """Moduli of the material with the scatter of each reading."""
+    random = np.random.default_rng(seed)
+    storage = 2e6 + 3e7 * omega**2 / (1e4 + omega**2)
+    loss = 3e7 * 100 * omega / (1e4 + omega**2)
+    return [one * np.exp(scatter * random.standard_normal(len(omega))) for one in (storage, loss)]
+
+
+def replicates(kind, scatter=0.01, *, factor=1.0, before=""):
+    omega = RUNS[kind](np.geomspace(10, 1000, 12))
+    columns = [omega, *(factor * one for one in moduli_at(omega, scatter))]
+    return omega, table(*columns, head=f"{before}omega [rad/s],E' [Pa],E'' [Pa]\n")
+
+
+@pytest.mark.parametrize("kind", RUNS)
+def test_replicates_are_one_curve(tmp_path, kind):
+    omega, text = replicates(kind)
+    data = read(tmp_path, text)
+    (one,) = curves(data)
+    assert np.allclose(np.sort(omega), one.frequency)
+    assert sorted(one.storage_modulus) == pytest.approx(sorted(data.storage_modulus))
+    assert re.search(
+        r"; \d+ runs are one curve, as they differ by [\d.]+ % only", data.attrs["taken"]
+    )
+    (again,) = read_moduli(tmp_path / "data.csv")
+    assert len(again) == len(omega)
+
+
+def test_runs_that_differ_are_no_replicates(tmp_path):
+    factors = np.array([1, 2, 4])
+    for kind in ("one below the other", "up and down", "three readings at each"):
+        omega, _ = replicates(kind)
+        storage, loss = moduli_at(omega)
+        storage *= np.tile(factors, 12) if kind.startswith("three") else np.repeat(factors, 12)
+        text = table(omega, storage, loss, head="omega [rad/s],E' [Pa],E'' [Pa]\n")
+        with pytest.raises(vcor.InputError, match=r"found a frequency.*replicates differ by"):
+            curves(read(tmp_path, text))
+
+
+def test_replicates_by_a_column_of_sets(tmp_path):
+    omega, _ = replicates("one below the other")
+    run = np.repeat([1, 2, 3], len(omega) // 3)
+    storage, loss = moduli_at(omega)
+    head = "set,omega [rad/s],E' [Pa],E'' [Pa]\n"
+    (one,) = curves(read(tmp_path, table(run, omega, storage, loss, head=head)))
+    assert len(one) == len(omega) and one.attrs["runs"] == 3
+    # other materials stay apart
+    found = curves(read(tmp_path, table(run, omega, storage * run, loss, head=head)))
+    assert len(found) == 3
+
+
+def test_replicates_at_several_temperatures(tmp_path):
+    omega, _ = replicates("up and down")
+    kelvin = np.repeat([283.15, 293.15, 303.15], len(omega))
+    moduli = [np.concatenate([moduli_at(omega * f, seed=i)[k] for i, f in enumerate((3, 1, 0.3))])
+              for k in (0, 1)]  # fmt: skip
+    text = table(kelvin, np.tile(omega, 3), *moduli, head="T [K],omega [rad/s],E' [Pa],E'' [Pa]\n")
+    data = read(tmp_path, text)
+    found = curves(data)
+    assert [one.attrs["temperature"] for one in found] == pytest.approx([283.15, 293.15, 303.15])
+    assert "3 runs at each of 3 temperatures are one curve" in data.attrs["taken"]
+    # a sweep of temperatures up and another one down
+    order = np.concatenate([np.arange(len(kelvin)), np.arange(len(kelvin))[::-1]])
+    rows = np.array(text.splitlines()[1:])[order]
+    again = curves(read(tmp_path, "\n".join([text.splitlines()[0], *rows])))
+    assert [one.attrs["runs"] for one in again] == [6, 6, 6]
+    master = vcor.master(tmp_path / "data.csv")
+    assert np.allclose(master.log_shift, [np.log10(3), 0, np.log10(0.3)], atol=0.05)
+
+
+def test_replicates_in_several_files(tmp_path):
+    names = []
+    for i, (celsius, factor) in enumerate(((10, 3), (10, 3), (20, 1), (20, 1), (30, 0.3))):
+        omega = np.geomspace(10, 1000, 12)
+        text = table(omega, *moduli_at(omega * factor, seed=i), head="omega,E',E''\n")
+        (tmp_path / f"{i}.csv").write_text(text)
+        names.append(f"{tmp_path}/{i}.csv@{celsius}C")
+    master = vcor.master(names)
+    assert [len(one.at) for one in master.curves] == [24, 24, 12]
+    assert np.allclose(master.log_shift, [np.log10(3), 0, np.log10(0.3)], atol=0.05)
+
+
+def test_a_copy_is_no_replicate(tmp_path):
+    omega = np.geomspace(10, 1000, 12)
+    text = table(omega, *moduli_at(omega), head="omega,E',E''\n")
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.csv").write_text(text)
+    names = [f"{tmp_path}/{name}.csv@20C" for name in ("a", "b")]
+    with pytest.raises(vcor.InputError, match="two curves at 20 C"):
+        vcor.master([*names, f"{tmp_path}/a.csv@30C"])
+
+
+def test_the_error_of_a_fit_to_replicates_is_their_scatter(tmp_path):
+    """Nine runs leave a third of the error of one, for the same misfit."""
+    parts = []
+    for runs in (1, 9):
+        omega = np.tile(np.geomspace(10, 1000, 12), runs)
+        storage, loss = moduli_at(omega, 0.02, seed=3)
+        text = table(omega, storage, loss, head="omega,E',E''\n")
+        found = vcor.fit(read(tmp_path, text), model="sls", poisson_ratio=0.4)
+        assert found.rms == pytest.approx(0.02, rel=0.3)
+        error = next(one.error for one in found.parameters if one.name == "beta")
+        # a misfit has 24 or 216 data, of which three parameters take some
+        parts.append(error / (found.rms * np.sqrt(24 * runs / (24 * runs - 3))))
+    assert parts[0] / parts[1] == pytest.approx(3, rel=0.05)
+
+
+def test_replicates_in_identify_and_a_table(tmp_path, capsys):
+    time = np.tile(np.geomspace(1e-3, 1, 9), 3)
+    modulus = 2e6 * time**-0.2 * np.exp(0.01 * np.random.default_rng(3).standard_normal(27))
+    path = tmp_path / "relaxation.csv"
+    path.write_text(table(time, modulus, head="t [s],E [Pa]\n"))
+    (tmp_path / "case.nml").write_text(
+        "&impact velocity = 1.0 /\n&sphere radius = 0.01, mass = 0.01, material = 'r' /\n"
+        "&plate material = 'm', waves = 'none' /\n&material name = 'r', model = 'rigid' /\n"
+        "&material name = 'm', model = 'power_law', coefficient = 1e6, exponent = 0.3, "
+        "poisson_ratio = 0.5 /\n"
+    )
+    found = vcor.identify(vcor.read(tmp_path / "case.nml"), path, ["m.exponent", "m.coefficient"])
+    assert found["m.exponent"] == pytest.approx(0.2, abs=0.01)
+    rows = printed(capsys, path, "--quiet").out.splitlines()[1:]
+    at, mean = np.array([[float(x) for x in row.split(",")] for row in rows]).T
+    assert np.allclose(at, time[:9]) and np.allclose(
+        np.log(mean), np.log(modulus).reshape(3, 9).mean(axis=0)
+    )

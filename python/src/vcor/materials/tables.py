@@ -13,6 +13,7 @@ from .._text import option
 from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
 from .labels import UNLABELLED, Label, read_label
 from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
+from .select import Where, conditions
 from .units import plain_unit, size
 
 
@@ -65,7 +66,10 @@ class Choice:
         columns: Mapping[str, str | int] | Sequence[str] | None,
         units: Mapping[str, str] | Sequence[str] | str | None,
         files: int = 1,
+        where: Where = None,
     ) -> None:
+        #: Which rows are taken
+        self.where = conditions(where)
         #: Whether what one file lacks may stand in another
         self.shared = files > 1
         #: Texts of `columns` that a file had, and heads of the files
@@ -133,7 +137,50 @@ class Choice:
             or (text.isdigit() and 0 < int(text) <= len(table.heads))
         }
 
+    def select(self, grid: Grid) -> Grid:
+        """Rows of the sheets that are taken."""
+        for one in self.where:
+            if plain(one.name) != "sheet" or not any(row.sheet for row in grid.rows):
+                continue
+            taken, rows = True, []
+            for row in grid.rows:
+                taken = one.takes(row.text) if row.sheet else taken
+                if taken:
+                    rows.append(row)
+            if not one.met:
+                raise one.refusal(f"{grid.path} has")
+            grid = replace(grid, rows=rows)
+        return grid
+
+    def filter(self, table: Table) -> bool:
+        """Leave the rows of a table that are taken; whether there are any."""
+        for one in self.where:
+            at = [i for i, head in enumerate(table.heads) if _matches(head, one.name)]
+            if not at and plain(one.name) == "line":
+                table.parts = [
+                    (title, [row for row in rows if one.takes(str(row.line))])
+                    for title, rows in table.parts
+                ]
+                continue
+            if not at and one.name.isdigit() and 0 < int(one.name) <= len(table.heads):
+                at = [int(one.name) - 1]
+            if len(at) != 1 or plain(one.name) == "temperature":
+                continue
+            column = Column(at[0], table.heads[at[0]])
+            table.parts = [
+                (title, [row for row in rows if one.takes(column.cell(row))])
+                for title, rows in table.parts
+            ]
+        return any(rows for _, rows in table.parts)
+
     def refuse_unseen(self, where: str) -> None:
+        """Refuse a text of `columns` that no file had, and a condition that took no row."""
+        for one in self.where:
+            if not one.met:
+                raise one.refusal(where)
+        self.refuse_unread(where)
+
+    def refuse_unread(self, where: str) -> None:
         """Refuse a text of `columns` that no file had."""
         for text, _ in self.columns.values():
             if text not in self._seen:
