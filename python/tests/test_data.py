@@ -930,3 +930,45 @@ def test_replicates_in_identify_and_a_table(tmp_path, capsys):
     assert np.allclose(at, time[:9]) and np.allclose(
         np.log(mean), np.log(modulus).reshape(3, 9).mean(axis=0)
     )
+
+
+# ------------------------------------------------------------------------------ bounded work
+
+
+def test_a_stray_cell_far_away(tmp_path):
+    """It costs neither memory nor time; one that belongs to the table makes it too wide."""
+    path = tmp_path / "data.xlsx"
+    frame = pd.DataFrame({"f [Hz]": HERTZ, "E' [MPa]": STORAGE / 1e6, "E'' [MPa]": LOSS / 1e6})
+    for place, value in (("XFD20000", "remark"), ("XFD1", "remark"), ("A200000", None)):
+        with pd.ExcelWriter(path) as book:
+            frame.to_excel(book, sheet_name="Sweep", index=False, startrow=3)
+            book.sheets["Sweep"][place] = value
+        is_the_material(read_data(path))
+    with pd.ExcelWriter(path) as book:
+        frame.to_excel(book, sheet_name="Sweep", index=False)
+        book.sheets["Sweep"]["XFD20000"] = 5.0
+    with pytest.raises(vcor.InputError, match="found 16384 columns, but the head has 3 names"):
+        read_data(path)
+
+
+def test_spreadsheets_have_a_bound(tmp_path, monkeypatch):
+    path = tmp_path / "data.xlsx"
+    pd.DataFrame({"t [s]": [1, 2], "E [Pa]": [2, 1]}).to_excel(path, index=False)
+    monkeypatch.setattr(grid, "_MOST_CELLS", 5)
+    with pytest.raises(vcor.InputError, match="data.xlsx:3: found more than"):
+        read_data(path)
+
+
+def test_numbers_and_errors_of_spreadsheets(tmp_path):
+    path = tmp_path / "data.xlsx"
+    times, moduli = [1, 2.5, 3, 4.0, 5], [5e6, 4.25e6, "#DIV/0!", 3e6, 2.123456789e6]
+    pd.DataFrame({"t [s]": times, "E [Pa]": moduli, "x": None}).to_excel(path, index=False)
+    data = read_data(path)
+    assert list(data.time) == [1, 2.5, 4, 5]
+    assert list(data.relaxation_modulus) == [5e6, 4.25e6, 3e6, 2.123456789e6]
+    assert "1 failed point left out: line 4" in data.attrs["taken"]
+
+
+def test_tables_have_a_bound(tmp_path):
+    text = "t [s],E [Pa]" + ",x" * 3000 + "\n1,5\n2,4\n"
+    refused(tmp_path, text, ":1: found 3002 columns, expected at most 2000")

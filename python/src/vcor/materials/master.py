@@ -310,10 +310,7 @@ def of_curves(
         # in the glass, below all steps that are seen, the law of the steps above does not hold
         best = min(laws, key=lambda one: one.misfit, default=None)
         if not (seen[0] and best and best.misfit < FOLLOWS and len(best.values) < seen.sum()):
-            raise NumericalError(
-                f"{unknown[0]}; expected data without one of the two, which "
-                f"{option('where')} leaves out: 'temperature!={curves[0].place.replace(' ', '')}'"
-            )
+            raise NumericalError(f"{unknown[0]}; expected data without one of the two")
         law = best.log_shift(temperatures, reference)
         steps = np.where(seen, steps, np.diff(law))
     shift, variance, unseen = (

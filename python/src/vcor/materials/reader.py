@@ -193,6 +193,9 @@ class Reader:
 
     def _all_cells(self, table: Table) -> None:
         """Refuse rows that end before the last name, as cells may be missing anywhere in them."""
+        if self.grid.separator == "xlsx":
+            # cells of a spreadsheet have places of their own
+            return
         rows = table.rows()
         need = len(table.heads)
         while need and _may_end_before(table.heads[need - 1], need - 1, rows):

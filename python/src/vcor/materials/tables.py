@@ -342,6 +342,8 @@ def _table(
 def _shifted(grid: Grid, line: int, units: Sequence[str], heads: Sequence[Head]) -> str:
     """What is wrong with a line of units that has fewer cells than the names, or more."""
     need, n = len(heads), len(units)
+    if grid.separator == "xlsx":
+        return ""
     while need and heads[need - 1].si in ("", "1"):
         need -= 1
     if need <= n and not any(cell.strip() for cell in units[len(heads) :]):
