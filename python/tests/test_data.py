@@ -972,3 +972,17 @@ def test_numbers_and_errors_of_spreadsheets(tmp_path):
 def test_tables_have_a_bound(tmp_path):
     text = "t [s],E [Pa]" + ",x" * 3000 + "\n1,5\n2,4\n"
     refused(tmp_path, text, ":1: found 3002 columns, expected at most 2000")
+
+
+@pytest.mark.parametrize("cell", [
+    "0e400", "1e400", "0e-400", "1e" + "9" * 50, "1e-400", "0e" + "9" * 5000, "1e+99999",
+    "0." + "0" * 5000 + "1",
+])  # fmt: skip
+def test_exponents_of_any_length(tmp_path, cell):
+    """A number that cannot be represented, or is 0, is refused with its line."""
+    for head in ("t [s],E [Pa]\n", "t [s],E [Pa],E [MPa]\n"):
+        more = "," * (head.count(",") > 1)
+        text = f"{head}1,5{more}\n2,{cell}{more and ',' + cell}\n3,4{more}\n"
+        with pytest.raises(vcor.InputError) as caught:
+            read(tmp_path, text)
+        assert len(str(caught.value)) < 300 + len(str(tmp_path))

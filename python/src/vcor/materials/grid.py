@@ -105,14 +105,22 @@ def digits_of(cell: str) -> tuple[float, int]:
     whole, mark, decimals = re.sub(r"[-+]", "", mantissa).replace(",", ".").partition(".")
     last = len(decimals) if mark else len(whole.rstrip("0")) - len(whole)
     digits = (whole + decimals if mark else whole.rstrip("0")).lstrip("0")
-    return 10.0 ** (int(power or 0) - last), len(digits)
+    return _unit(power, last), len(digits)
 
 
 def resolution(cell: str) -> float:
     """Half a unit of the last digit of a number."""
     mantissa, _, power = re.sub("[dD]", "e", cell.lower().replace("−", "-")).partition("e")
     digits = re.split("[.,]", mantissa)
-    return 0.5 * 10.0 ** (int(power or 0) - (len(digits[1]) if len(digits) > 1 else 0))
+    return 0.5 * _unit(power, len(digits[1]) if len(digits) > 1 else 0)
+
+
+def _unit(power: str, last: int) -> float:
+    """Unit of a decimal of a number, a power of ten that can be represented."""
+    # more digits than four are beyond any number, whatever they are
+    digits = power.lstrip("+-").lstrip("0")
+    exponent = int(digits or 0) if len(digits) < 5 else 9999
+    return 10.0 ** min(max(exponent * (-1 if power.startswith("-") else 1) - last, -300), 300)
 
 
 def read_grid(path: str | os.PathLike[str]) -> Grid:
