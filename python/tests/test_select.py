@@ -129,7 +129,8 @@ def test_a_condition_counts_in_the_files_that_have_its_column(tmp_path):
 
 def test_words_as_sets(tmp_path):
     text = "Sample,t [s],E [Pa]\n" + "".join(
-        f"{name},{t},{factor / t**0.1}\n" for name, factor in (("A", 1e6), ("B", 3e6), ("C", 1.02e6))
+        f"{name},{t},{factor / t**0.1}\n"
+        for name, factor in (("A", 1e6), ("B", 3e6), ("C", 1.02e6))
         for t in (1, 2, 3)
     )  # fmt: skip
     found = curves(read_data(write(tmp_path, text), {"set": "Sample"}))
