@@ -40,9 +40,11 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse the options."""
-        what, _, words = message.partition("unrecognized arguments: ")
-        if words and not what:
-            message += near(words.split()[0].partition("=")[0], self._option_string_actions)
+        what, mark, words = message.partition("unrecognized arguments: ")
+        if mark and not what:
+            first = next(iter(words.split()), "")
+            message = f"unrecognized arguments: {words if first else repr(words)}"
+            message += near(first.partition("=")[0], self._option_string_actions)
         raise UsageError(f"{message} ({self.prog} --help says more)")
 
     def options(self, arguments: Sequence[str] | None) -> argparse.Namespace:
