@@ -128,6 +128,21 @@ def test_a_line_is_short_whatever_a_cell_holds(tmp_path, capsys, letter):
         assert code in (2, 3) and len(line) < 3.5 * MOST
 
 
+@pytest.mark.parametrize("name", ["LAMMPS", "lammps", "MercuryDPM", "Yade"])
+def test_programs_of_another_command_are_named(capsys, name):
+    code, line = refusal(capsys, "card", "a.nml", "--for", name)
+    assert code == 2 and f"vcor export writes for {name.lower()}" in line
+    # in any case, where they belong: the case is what is missing
+    code, line = refusal(capsys, "export", "no.nml", "--for", name, "--velocities", "1:2:3")
+    assert code == 4 and "no.nml" in line
+
+
+def test_a_figure_of_a_case_says_what_is_drawn(tmp_path, capsys):
+    (tmp_path / "a.nml").write_text(DROP)
+    code, line = refusal(capsys, "plot", tmp_path / "a.nml")
+    assert code == 3 and "the results of vcor run, a .h5" in line
+
+
 # ------------------------------------------------------------------------------------- arguments
 
 
