@@ -100,6 +100,8 @@ contains
          error%message = error%message//'; vcor plot draws files of results'
       case ('.xlsx')
          error%message = error%message//'; vcor fit, master, identify and table read data'
+      case default
+         continue
       end select
    end subroutine name_command
 
