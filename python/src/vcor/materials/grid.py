@@ -105,22 +105,21 @@ def digits_of(cell: str) -> tuple[float, int]:
     whole, mark, decimals = re.sub(r"[-+]", "", mantissa).replace(",", ".").partition(".")
     last = len(decimals) if mark else len(whole.rstrip("0")) - len(whole)
     digits = (whole + decimals if mark else whole.rstrip("0")).lstrip("0")
-    return _unit(power, last), len(digits)
+    return _power_of_ten(power, last), len(digits)
 
 
 def resolution(cell: str) -> float:
     """Half a unit of the last digit of a number."""
     mantissa, _, power = re.sub("[dD]", "e", cell.lower().replace("−", "-")).partition("e")
     digits = re.split("[.,]", mantissa)
-    return 0.5 * _unit(power, len(digits[1]) if len(digits) > 1 else 0)
+    return 0.5 * _power_of_ten(power, len(digits[1]) if len(digits) > 1 else 0)
 
 
-def _unit(power: str, last: int) -> float:
-    """Unit of a decimal of a number, a power of ten that can be represented."""
-    # more digits than four are beyond any number, whatever they are
-    digits = power.lstrip("+-").lstrip("0")
-    exponent = int(digits or 0) if len(digits) < 5 else 9999
-    return 10.0 ** min(max(exponent * (-1 if power.startswith("-") else 1) - last, -300), 300)
+def _power_of_ten(power: str, decimals: int) -> float:
+    """Unit of the last of some decimals of a number with a power of ten, 0 or inf beyond reals."""
+    # a float, since a text of thousands of digits is no int
+    exponent = float(power or 0) - decimals
+    return float(f"1e{max(-999.0, min(999.0, exponent)):.0f}")
 
 
 def read_grid(path: str | os.PathLike[str]) -> Grid:
@@ -155,6 +154,8 @@ def _narrow(grid: Grid) -> Grid:
 
 def _bytes(name: str) -> bytes:
     try:
+        if name == "-" and sys.stdin is None:
+            raise FileError("the standard input is closed")
         if name == "-":
             raw = sys.stdin.buffer.read(MOST_BYTES + 1)
         else:
@@ -347,7 +348,7 @@ def _labview(name: str, lines: list[str]) -> Grid:
         if in_head or not is_number(cells[0]) and not any(map(is_number, cells[1:])):
             facts[cells[0]] = cells[1:]
             continue
-        if not cells[0] and facts.get("X_Columns", [""])[0] == "No":
+        if not cells[0] and (facts.get("X_Columns") or [""])[0] == "No":
             first, step = (number((facts.get(key) or ["nan"])[0]) for key in ("X0", "Delta_X"))
             cells[0] = repr(first + body * step)
         body += 1

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _command, _text
-from .._library import Floats, InputError, NumericalError, within
+from .._library import Floats, InputError, NumericalError, UsageError, within
 from .._text import command, option
 from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli, together
 from .samples import one_thread
@@ -238,6 +238,8 @@ def master(
         shift and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
+    if not names:
+        raise UsageError("expected at least one file of data")
     if poisson_ratio is not None:
         within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
     choice = Choice(columns, units, len(names), where)

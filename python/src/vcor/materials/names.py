@@ -42,6 +42,8 @@ QUANTITIES = {
 }  # fmt: skip
 _SYMBOLS = {symbol: one for one in QUANTITIES.values() for symbol in one.symbols}
 _WORDS = {word: one for one in QUANTITIES.values() for word in one.words}
+#: Letters of a name at most: what is longer is a text
+MOST_LETTERS = 200
 #: Columns of a laboratory's table that are no data
 ASIDE = {"", *_NAMES["aside"]}
 #: Columns of texts that rows may end before
@@ -183,6 +185,8 @@ def _parts(text: str) -> list[tuple[str, str]]:
 def read_head(text: str) -> Head:
     """What the head of a column says: its quantity, its unit, and what goes with them."""
     given = text
+    if len(text) > MOST_LETTERS:
+        return Head(given)
     text = text.strip()
     if text.startswith('"'):
         # quoted; at the end alone it belongs to E" and G"

@@ -6,6 +6,9 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from .. import _library
 from .._library import InputError, UsageError
@@ -15,6 +18,9 @@ from .labels import UNLABELLED, Label, read_label
 from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
 from .select import Where, conditions
 from .units import plain_unit, size
+
+#: Heads that a message shows
+MOST_HEADS = 12
 
 
 @dataclass
@@ -75,6 +81,7 @@ class Choice:
         #: Texts of `columns` that a file had, and heads of the files
         self._seen: set[str] = set()
         self._heads: dict[str, None] = {}
+        columns, units = _texts(columns, "columns"), _texts(units, "units")
         if isinstance(columns, str):
             columns = columns.split(",")
         #: Names of the columns of a file without a head, in their order
@@ -184,9 +191,26 @@ class Choice:
         """Refuse a text of `columns` that no file had."""
         for text, _ in self.columns.values():
             if text not in self._seen:
-                known = ", ".join(f"'{one}'" for one in self._heads)
+                known = ", ".join(f"'{one}'" for one in [*self._heads][:MOST_HEADS])
+                known += ", ..." * (len(self._heads) > MOST_HEADS)
                 raise UsageError(f"{option('columns')}: {where} no column '{text}', expected one "
                                  f"of {known}")  # fmt: skip
+
+
+def _texts(given: Any, name: str) -> Any:
+    """What a user says of columns: a text, texts, or texts by their names; else refused."""
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
+    if given is None or isinstance(given, str):
+        return given
+    words = given
+    if isinstance(given, Mapping):
+        # a column may be a number
+        words = [*given, *(str(one) if name == "columns" else one for one in given.values())]
+    if not isinstance(words, Sequence) or not all(isinstance(one, str) for one in words):
+        raise UsageError(f"{option(name)}: found {given!r:.60}, expected texts, or texts by the "
+                         "names of quantities")  # fmt: skip
+    return given
 
 
 def _named(key: str) -> tuple[str, float]:
@@ -533,7 +557,7 @@ def _same(table: Table, one: Column, other: Column) -> bool:
         cells = one.cell(row), other.cell(row)
         if is_missing(cells[0]) and is_missing(cells[1]):
             continue
-        if not all(map(is_number, cells)):
+        if not all(is_number(cell) and math.isfinite(number(cell)) for cell in cells):
             return False
         values = [number(c) * s[0] + s[1] for c, s in zip(cells, scales, strict=True)]
         # each is rounded for itself
