@@ -9,7 +9,9 @@
  * printed, nothing ends the process. A pointer that is NULL where this page does not allow it, and a
  * number of elements below zero, are VCOR_ERROR_USAGE; the message names the argument. An array without
  * elements may be NULL. A time or a frequency that is NaN is VCOR_ERROR_INPUT; a value that is NaN makes
- * its point VCOR_INVALID. No function can detect a pointer to memory that has been released.
+ * its point VCOR_INVALID. No function can detect
+ * a pointer that vcor_read() has not made, or one to memory that has been released: what follows is
+ * undefined.
  *
  * Memory. What a function hands over as a pointer (a text, an array) is released with free(), a case
  * with vcor_free(). Where the memory is too small, the code is VCOR_ERROR_FILE.

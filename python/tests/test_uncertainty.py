@@ -606,3 +606,11 @@ def test_sweeps_that_have_no_bands(swept, half_space):
     source = {"parameters": [{"name": "impact.velocity", "value": 2.0}], "covariance": [[0.01]]}
     with pytest.raises(vcor.UsageError, match="is swept, and the covariance has it"):
         vcor.bands(swept, covariance=source)
+
+
+def test_forms_of_a_spread_are_those_of_the_caller(sls, capsys):
+    with pytest.raises(vcor.UsageError, match=r"such as 0.05 or '5%', '0.1' \(in its unit"):
+        vcor.propagate(sls, {"rubber.beta": "x"})
+    with pytest.raises(SystemExit):
+        _command.call("uncertainty", [str(PAPER / "sls.nml"), "--vary", "rubber.beta=x"])
+    assert "expected such as 5%, 0.1 (in its unit) or 1:2" in capsys.readouterr().err

@@ -8,10 +8,11 @@ import functools
 import importlib
 import io
 import os
+import re
 import signal
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NoReturn
 
 from ._library import (
@@ -33,6 +34,8 @@ class Parser(argparse.ArgumentParser):
 
     #: Option whose value may begin with a dash, as -5C
     signed = ""
+    #: What to say of choices that another command has
+    elsewhere: Mapping[str, str] = {}
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
@@ -48,9 +51,13 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse the options."""
-        what, _, words = message.partition("unrecognized arguments: ")
-        if words and not what:
-            message += near(words.split()[0].partition("=")[0], self._option_string_actions)
+        what, mark, words = message.partition("unrecognized arguments: ")
+        if mark and not what:
+            first = next(iter(words.split()), "")
+            message = f"unrecognized arguments: {words if first else repr(words)}"
+            message += near(first.partition("=")[0], self._option_string_actions)
+        if wrong := re.search(r"invalid choice: '([^']*)'", message):
+            message += self.elsewhere.get(wrong[1].lower(), "")
         raise UsageError(f"{message} ({self.prog} --help says more)")
 
     def options(self, arguments: Sequence[str] | None) -> argparse.Namespace:

@@ -7,6 +7,7 @@ import ctypes
 import functools
 import os
 import queue
+import re
 import threading
 from collections.abc import Callable
 from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
@@ -28,6 +29,12 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
 
 
+def _short(line: str) -> str:
+    """A line that can be read, whatever a file has in its cells: no long words, not too many."""
+    line = re.sub(r"(\S{80})\S{120,}(\S{20})", r"\1...\2", line)
+    return line if len(line) <= 1000 else f"{line[:600]} ... {line[-300:]}"
+
+
 class Error(Exception):
     """An error of vcor; its text is the line of the program, `code` the program's exit code."""
 
@@ -36,7 +43,7 @@ class Error(Exception):
     result: Any = None
 
     def __init__(self, message: str = "") -> None:
-        super().__init__(printable(message))
+        super().__init__(_short(printable(message)))
 
 
 class InputError(Error, ValueError):

@@ -137,10 +137,11 @@ def _check(path: str) -> None:
                 raise InputError(f"{path}: this is no HDF5 file")
     except FileNotFoundError:
         raise FileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        if isinstance(error, FileError):
+    except (OSError, ValueError) as error:
+        if isinstance(error, Error):
             raise
-        raise FileError(f"{path}: {error.strerror}") from None
+        # a byte 0 in a name is a ValueError
+        raise FileError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
     if not _survives(path):
         raise FileError(f"{path}: this file is damaged: HDF5 cannot read it")
     try:

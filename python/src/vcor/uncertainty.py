@@ -116,8 +116,10 @@ class Spread:
         if made:
             _check_deviation(case, address, value, deviation, text)
             return made
-        raise UsageError(f"{address}={text}: expected such as 5%, 0.1 (in its unit) or 1:2, "
-                         "larger than 0")  # fmt: skip
+        forms = "5%, 0.1 (in its unit) or 1:2, larger than 0"
+        if not _text.OPTIONS.get():
+            forms = "0.05 or '5%', '0.1' (in its unit) or '1:2', larger than 0"
+        raise UsageError(f"{address}={text}: expected such as {forms}")
 
     @classmethod
     def joint(cls, case: Case, source: Any) -> tuple[Case, Spread]:

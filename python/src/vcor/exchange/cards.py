@@ -19,6 +19,7 @@ from ..arguments import MOST_POINTS
 from ..case import Case, number
 from ..sources import IMPACT, material_case
 from .card_formats import FORMATS, UNITS, Card, Source, Terms, head_of
+from .codes import TARGETS
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)
@@ -289,6 +290,7 @@ def _parser() -> _command.Parser:
         "such a card and write a &material group. Models that are not sums of exponentials become "
         "one, with its error.",
     )
+    parser.elsewhere = {one: f"; vcor export writes for {one}" for one in TARGETS}
     add = parser.add_argument
     add("file", metavar="FILE", help="case, file of &material groups, or a file that holds a card")
     add("--material", metavar="NAME", help="name of the material; needed if there are several")

@@ -49,6 +49,8 @@ SHIFT_NOTE = (
     "the standard errors leave out those of the shift factors: identify fits moduli and shift at "
     "once"
 )
+#: Most points of a curve that are fitted one by one
+MOST_POINTS = 2000
 #: Arrays of a fit, in their order
 _RELAXATION = ("time", "relaxation_modulus")
 _DYNAMIC = ("frequency", "storage_modulus", "loss_modulus")
@@ -217,7 +219,30 @@ def samples_of(
     at = parts[0]["frequency" if kind == "dynamic" else "time"].to_numpy(dtype=float)
     moduli = parts[0][names].to_numpy(dtype=float).T
     own = parts[0]["set"].to_numpy(dtype=int) if "set" in parts[0] else None
+    if len(at) > MOST_POINTS:
+        n = len(at)
+        at, moduli = _averaged(at, moduli)
+        across = "frequency" if kind == "dynamic" else "time"
+        note = (
+            f"  note: {n} points are more than {MOST_POINTS}: the fit is to {len(at)} geometric "
+            f"means of those next to each other in log {across}"
+        )
+        return Samples(at, moduli, keys), source, [note]
     return Samples(at, np.ascontiguousarray(moduli), keys, own), source, []
+
+
+def _averaged(at: Floats, moduli: Floats) -> tuple[Floats, Floats]:
+    """Geometric means of points in parts of equal ratio, of which there are MOST_POINTS/2.
+
+    Of twelve decades a part w = 0.028 of the logarithm; a mean is off by w^2/24 = 3e-5 times the
+    curvature of ln E against ln t.
+    """
+    logs = np.log(np.vstack([at, moduli]))
+    part = (logs[0] - logs[0].min()) * (MOST_POINTS // 2) / max(float(np.ptp(logs[0])), 1e-300)
+    _, part = np.unique(np.floor(part), return_inverse=True)
+    counts = np.bincount(part)
+    means = np.exp([np.bincount(part, row) / counts for row in logs])
+    return means[0], np.ascontiguousarray(means[1:])
 
 
 def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:

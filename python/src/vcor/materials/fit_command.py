@@ -346,8 +346,9 @@ def _check_options(options: argparse.Namespace) -> dict[str, float]:
     given = options.from_model is not None
     if given and options.data:
         raise UsageError("--from-model takes the place of a data file, found both")
-    if given and (options.units or options.columns or options.shear):
-        raise UsageError("--units, --columns and --shear are for data files, found --from-model")
+    if given and (options.units or options.columns or options.where or options.shear):
+        raise UsageError("--units, --columns, --where and --shear are for data files, found "
+                         "--from-model")  # fmt: skip
     if not given and len(options.data) != 1:
         raise UsageError("fit takes one data file, or --from-model CASE.nml")
     if not given and options.dynamic:
@@ -384,7 +385,7 @@ def _work(options: argparse.Namespace) -> None:
         notes = [f"  note: {note}" for note in sampled.notes]
     else:
         table = read_data(options.data[0], columns_option(options.columns),
-                          options.units)  # fmt: skip
+                          options.units, where=options.where)  # fmt: skip
         samples, source, notes = samples_of(table, ratio, shear=options.shear)
         what = str(table.attrs["taken"]).removeprefix(f"{source}: ")
     stem = Path(source).stem

@@ -46,6 +46,7 @@ from .observations import (
 )
 from .samples import one_thread
 from .search import STEP, Problem
+from .select import Where
 from .tables import Choice
 
 #: Errors of the impacts to those of the data, small since derivatives are differences of impacts,
@@ -88,6 +89,7 @@ def identify(
     seed: int = 1,
     columns: Columns = None,
     units: Units = None,
+    where: Where = None,
 ) -> Identification:
     """Identify parameters of a case from measured data, as `vcor identify` does.
 
@@ -117,6 +119,9 @@ def identify(
     columns, units
         Which columns of files are what, and their units, as for `vcor.read_data`. A text counts in
         the files that have such a head.
+    where
+        Which rows of files are taken, as for `vcor.read_data`; a condition counts in the files that
+        have such a column.
 
     Returns
     -------
@@ -142,7 +147,7 @@ def identify(
     alone: Any = [data] if hasattr(data, "keys") else listed(data)
     # a DataFrame is not a Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
-    choice = Choice(columns, units, sum(not isinstance(one, dict) for one in sources))
+    choice = Choice(columns, units, sum(not isinstance(one, dict) for one in sources), where)
     if not sources:
         raise UsageError("expected at least one file or table of data")
     free = [address for address in free if address not in fix]
@@ -437,7 +442,8 @@ def _work(options: argparse.Namespace) -> None:
     models = [word.strip() for words in options.model for word in words.split(",")]
     case = read(options.case, *(name for name in options.data if name.endswith(".nml")))
     data = [name for name in options.data if not name.endswith(".nml")]
-    said: dict[str, Any] = {"columns": columns_option(options.columns), "units": options.units}
+    said: dict[str, Any] = {"columns": columns_option(options.columns), "units": options.units,
+                            "where": options.where}  # fmt: skip
     for model in models or [None]:
         try:
             found.append(

@@ -21,10 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _command, _text
-from .._library import Floats, InputError, NumericalError, within
+from .._library import Floats, InputError, NumericalError, UsageError, within
 from .._text import command, option
-from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli
+from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli, together
 from .samples import one_thread
+from .select import Where
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .tables import Choice
 from .units import ZERO_C
@@ -203,6 +204,7 @@ def master(
     vertical_shift: bool | None = None,
     columns: Columns = None,
     units: Units = None,
+    where: Where = None,
 ) -> Master:
     """Master curve of moduli at several temperatures, as `vcor master` makes it.
 
@@ -219,6 +221,8 @@ def master(
     columns, units
         Which columns of the files are what, and their units, as for `vcor.read_data`. A text
         counts in the files that have such a head.
+    where
+        Which rows are taken, as for `vcor.read_data`.
 
     Returns
     -------
@@ -234,13 +238,18 @@ def master(
         shift and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
+    if not names:
+        raise UsageError("expected at least one file of data")
     if poisson_ratio is not None:
         within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
-    choice = Choice(columns, units, len(names))
+    choice = Choice(columns, units, len(names), where)
     read = [one for name in names for one in read_moduli(name, choice, poisson_ratio=poisson_ratio)]
     choice.refuse_unseen("the files have")
     found = of_curves(
-        [curve_of(one) for one in read], str(names[0]), reference_temperature, vertical_shift
+        [curve_of(one) for one in together(read)],
+        str(names[0]),
+        reference_temperature,
+        vertical_shift,
     )
     return dataclasses.replace(
         found, taken=tuple(dict.fromkeys(one.attrs["taken"] for one in read))
@@ -369,7 +378,7 @@ def _work(options: argparse.Namespace) -> None:
     found = master(
         options.data, reference_temperature=reference, poisson_ratio=ratio,
         vertical_shift=None if vertical is None else vertical == "yes",
-        columns=columns_option(options.columns), units=options.units,
+        columns=columns_option(options.columns), units=options.units, where=options.where,
     )  # fmt: skip
     dynamic = found.curves[0].dynamic
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa],set" if dynamic else "t [s],E [Pa],set"

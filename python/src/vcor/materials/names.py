@@ -12,7 +12,7 @@ from pathlib import Path
 
 from .. import _library
 from .labels import TEMPERATURE, read_label, unified
-from .units import plain_unit, quantities_of, suffix_unit
+from .units import plain_unit, quantities_of, size, suffix_unit
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,8 @@ QUANTITIES = {
 }  # fmt: skip
 _SYMBOLS = {symbol: one for one in QUANTITIES.values() for symbol in one.symbols}
 _WORDS = {word: one for one in QUANTITIES.values() for word in one.words}
+#: Letters of a name at most: what is longer is a text
+MOST_LETTERS = 200
 #: Columns of a laboratory's table that are no data
 ASIDE = {"", *_NAMES["aside"]}
 #: Columns of texts that rows may end before
@@ -52,6 +54,11 @@ COMPUTED = frozenset(_NAMES["computed"])
 _ERRORS = frozenset(_NAMES["errors"])
 #: By quantity: words in a name that is not known which make it likely
 CUES: dict[str, list[str]] = _NAMES["cues"]
+#: Words for a mean value, which change nothing
+_AVERAGE = re.compile(
+    r"^(?:average|avg\.?|mean|mittlere[rs]?|mittel|moyenne?|promedio)(?: of(?: the)?)? "
+    r"| \(?(?:average|avg\.?|mean|moyenne?|promedio|mittel)\)?$"
+)
 _SHEAR = re.compile(
     r"shear|schub|scher|cisaillement|cizalla|せん断|剪切|\bG(?![a-z])|\|G", re.UNICODE
 )
@@ -130,6 +137,8 @@ def quantity(text: str) -> Quantity | None:
     found = _SYMBOLS.get(_symbol(text)) or _WORDS.get(plain(text))
     if found or not text:
         return found
+    if (bare := _AVERAGE.sub("", plain(text))) != plain(text) and bare:
+        return quantity(bare)
     by_name = {plain(name): one for name, one in QUANTITIES.items()}
     if found := by_name.get(plain(text)) or _columns().get(plain(text)):
         return found
@@ -176,7 +185,13 @@ def _parts(text: str) -> list[tuple[str, str]]:
 def read_head(text: str) -> Head:
     """What the head of a column says: its quantity, its unit, and what goes with them."""
     given = text
-    text = unicodedata.normalize("NFKC", text.strip().strip('"')).strip().strip(":")
+    if len(text) > MOST_LETTERS:
+        return Head(given)
+    text = text.strip()
+    if text.startswith('"'):
+        # quoted; at the end alone it belongs to E" and G"
+        text = text[1:].removesuffix('"')
+    text = unicodedata.normalize("NFKC", text).strip().strip(":")
     temperature, doubt, plainer = float("nan"), "", unified(text)
     if (found := _AT.search(plainer)) and (label := read_label(found[0])):
         temperature, doubt = label.kelvin, label.flaw
@@ -186,7 +201,9 @@ def read_head(text: str) -> Head:
     for name, of in _parts(text):
         stem = _of_error(name)
         known = quantity(stem or name)
-        if known and _is_quotient(text[len(name) :]):
+        suffix = text[len(name) :].startswith("_") and of
+        if known and (_is_quotient(text[len(name) :]) or (suffix and not size(of, known.unit))):
+            # E''/E', or an index such as that of e_s, which is no unit of the quantity
             known = None
         elif known or is_address(stem or name):
             bare, unit, sigma = stem or name, of, bool(stem)

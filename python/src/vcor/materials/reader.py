@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ from .grid import (
 )
 from .labels import COLDEST, Label
 from .names import ASIDE, COMPUTED, QUANTITIES, REMARKS, Head, is_address, plain
+from .select import words_of
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
 from .units import ZERO_C, examples, plain_unit, quantities_of, size
 
@@ -37,6 +39,11 @@ _CONTRADICTION = 0.1
 SAME_TEMPERATURE = 1.0
 #: Sets that a report names one by one
 MOST_SETS = 20
+#: Names of compliances
+_COMPLIANCE = re.compile(
+    r"(?i:complian|nachgiebig|complaisance|コンプライアンス|柔量)"
+    r"|^\s*J(\(t\)|_?t|['\"′″*]{0,2})?\s*([\[(/].*)?$"
+)
 ALIKE = {
     "dynamic": "moduli against frequency",
     "relaxation": "moduli against time",
@@ -71,12 +78,17 @@ class Reader:
         self, grid: Grid, choice: Choice, unit_of: Callable[[str], str] | None, whole: bool
     ) -> None:
         self.whole = whole
+        grid = choice.select(grid)
         self.path, self.grid, self.choice, self.unit_of = grid.path, grid, choice, unit_of
         self.names: dict[str, str] = {}
         self.units: dict[str, str] = {}
         #: By column: the unit of its last digit in SI units, and its most significant digits
         self.digits: dict[str, tuple[float, int]] = {}
         self.left: list[str] = []
+        #: How many rows the user wants
+        self.selected = ""
+        #: Points that were left out, and why
+        self.failed: list[str] = []
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
         #: Temperatures that are stated, but not sure
@@ -87,9 +99,10 @@ class Reader:
         tables = tables_of(self.grid, self.choice)
         self.choice.look(tables)
         if not self.choice.shared:
-            self.choice.refuse_unseen(f"{self.path} has")
+            self.choice.refuse_unread(f"{self.path} has")
         if not tables:
             raise self._no_table()
+        tables = self._selected(tables)
         for table in tables:
             table.heads = self.choice.heads(table)
         kinds = [self._kind(table) for table in tables]
@@ -104,7 +117,7 @@ class Reader:
         if len(found) > 1:
             raise InputError(
                 f"{self.path}: found {' and '.join(ALIKE[kind] for kind in sorted(found))}"
-                ", expected a file with one of them"
+                f", expected a file with one of them{self._one_sheet()}"
             )
         (kind,) = found
         frames: list[pd.DataFrame] = []
@@ -120,10 +133,48 @@ class Reader:
             and (kind == "record" or any({"bounce_time"} & set(one) for one in frames))
         ):
             raise InputError(
-                f"{self.path}: found {len(frames)} tables of {ALIKE[kind]}, expected one"
+                f"{self.path}: found {len(frames)} tables of {ALIKE[kind]}, expected "
+                f"one{self._one_sheet()}"
             )
         self._same_labels(frames)
+        frames = self._at_temperatures(frames)
+        if not self.choice.shared:
+            self.choice.refuse_unseen(f"{self.path} has")
         return frames, kind
+
+    def _one_sheet(self) -> str:
+        """How a user takes one sheet of several, for a message."""
+        sheets = [row.text for row in self.grid.rows if row.sheet]
+        return f", or {option('where', {'sheet': sheets[0]})}" if len(sheets) > 1 else ""
+
+    def _selected(self, tables: Sequence[Table]) -> list[Table]:
+        """Tables with the rows that the user wants, by their columns."""
+        before = sum(len(table.rows()) for table in tables)
+        found = [table for table in tables if self.choice.filter(table)]
+        rows = sum(len(table.rows()) for table in found)
+        if rows < before:
+            self.selected = f"{rows} of {before} rows"
+        if not found:
+            wanted = self.choice.where
+            raise next((one for one in wanted if not one.met), wanted[-1]).refusal(self.path)
+        return found
+
+    def _at_temperatures(self, frames: Sequence[pd.DataFrame]) -> list[pd.DataFrame]:
+        """Rows at the temperatures that the user wants."""
+        found = []
+        for frame in frames:
+            taken = np.ones(len(frame), dtype=bool)
+            for one in self.choice.where:
+                if plain(one.name) == "temperature" and "temperature" in frame:
+                    taken &= one.temperatures(frame["temperature"].to_numpy(dtype=float))
+            if taken.all():
+                found.append(frame)
+            elif taken.any():
+                found.append(frame[taken].copy())
+        if not found:
+            one = next(one for one in self.choice.where if plain(one.name) == "temperature")
+            raise one.refusal(f"{self.path} has")
+        return found
 
     def _same_labels(self, frames: Sequence[pd.DataFrame]) -> None:
         """Refuse temperatures that are not sure, and sets with and without a temperature."""
@@ -142,6 +193,9 @@ class Reader:
 
     def _all_cells(self, table: Table) -> None:
         """Refuse rows that end before the last name, as cells may be missing anywhere in them."""
+        if self.grid.separator == "xlsx":
+            # cells of a spreadsheet have places of their own
+            return
         rows = table.rows()
         need = len(table.heads)
         while need and _may_end_before(table.heads[need - 1], need - 1, rows):
@@ -234,11 +288,7 @@ class Reader:
             self._all_known(table)
         groups = groups_of(table, self.path, wanted)
         taken = {column.index for _, group in groups for column in group.values()}
-        self.left += [
-            head.text.strip()
-            for i, head in enumerate(table.heads)
-            if i not in taken and head.text.strip() and head.text.strip() not in self.left
-        ]
+        self._leave(table, taken)
         units = {}
         for _, group in groups:
             units.update(self._units(table, group))
@@ -269,6 +319,18 @@ class Reader:
                 frames.append(frame)
         return frames
 
+    def _leave(self, table: Table, taken: set[int]) -> None:
+        """Note the columns that are not taken, and the words by which they select rows."""
+        for i, head in enumerate(table.heads):
+            text = head.text.strip()
+            if i in taken or not text or any(one.partition(" (")[0] == text for one in self.left):
+                continue
+            words = words_of([row.cells[i] for row in table.rows() if i < len(row.cells)])
+            if words:
+                how = option("where", {text: words[0]})
+                text += f" ({', '.join(words)}: {how} takes one)"
+            self.left.append(text)
+
     def _frame(
         self, table: Table, group: dict[str, Column], units: dict[int, str], kind: str
     ) -> pd.DataFrame | None:
@@ -280,9 +342,18 @@ class Reader:
         rows = [row for row in rows if not all(is_missing(one.cell(row)) for one in group.values())]
         if not rows:
             return None
+        if self.whole and kind in ("dynamic", "relaxation", "shift"):
+            rows = self._measured(rows, group)
         values: dict[str, Floats] = {}
         for key, column in group.items():
             name = "time" if key == "run_time" else key
+            cells = [column.cell(row) for row in rows]
+            if key == "set" and not all(map(is_number, cells)):
+                # words, by the order in which they come
+                codes = {word: i for i, word in enumerate(dict.fromkeys(cells))}
+                values[name] = np.array([codes[cell] for cell in cells], dtype=float)
+                self.names.setdefault(name, column.head.text.strip())
+                continue
             values[name] = self._numbers(rows, column, units.get(column.index, ""), name, kind)
             self.names.setdefault(name, column.head.text.strip())
             self.units[name] = column.head.si
@@ -299,6 +370,25 @@ class Reader:
         if self.whole and kind in ("dynamic", "relaxation", "shift"):
             self._positive(frame, kind)
         return frame
+
+    def _measured(self, rows: list[Row], group: dict[str, Column]) -> list[Row]:
+        """Rows without those of failed points, as long as these are the fewer ones."""
+        columns = [one for key, one in group.items() if key not in ("temperature", "set")]
+        failed = [
+            (row, next(one for one in columns if is_missing(one.cell(row))))
+            for row in rows
+            if any(is_missing(one.cell(row)) for one in columns)
+        ]
+        if 2 * len(failed) >= len(rows):
+            return rows
+        self.failed += [
+            f"line {row.line} ('{cell}' in '{one.head.text.strip()}')"
+            if (cell := one.cell(row))
+            else f"line {row.line} (nothing in '{one.head.text.strip()}')"
+            for row, one in failed
+        ]
+        lost = {row.line for row, _ in failed}
+        return [row for row in rows if row.line not in lost]
 
     def _numbers(
         self, rows: Sequence[Row], column: Column, unit: str, name: str, kind: str
@@ -634,6 +724,10 @@ class Reader:
             return InputError(table.flaw)
         names = _known(table)
         if not kind:
+            creep = next((h.text.strip() for h in table.heads if _COMPLIANCE.search(h.text)), "")
+            if creep:
+                return InputError(f"{place}: found the compliance '{creep}', expected moduli"
+                                  + _of_compliance("frequency" in names))  # fmt: skip
             could = [(head, may) for head in free if (may := _could_be(head, names))]
             stress = " (a stress over the strain)"
             if not could:
@@ -708,10 +802,18 @@ class Reader:
         ]
         n = len(frame)
         line = f"{self.path}: {n} point{'s' * (n > 1)}: {', '.join(parts)}"
+        if self.choice.where:
+            line += f"; with {' and '.join(map(str, self.choice.where))}"
+            line += f" ({self.selected})" if self.selected else ""
         if sets := _sets(frame):
             line += f"; {sets}"
         if self.comma:
             line += "; with decimal commas"
+        if self.failed:
+            n = len(self.failed)
+            more = f" and {n - 4} more" if n > 4 else ""
+            line += f"; {n} failed point{'s' * (n > 1)} left out: "
+            line += f"{', '.join(self.failed[:4])}{more}"
         if self.left:
             more = f" and {len(self.left) - 8} more" if len(self.left) > 8 else ""
             line += f"; not taken: {', '.join(self.left[:8])}{more}"
@@ -724,6 +826,16 @@ def refuse_all_but_moduli(kind: str | None, path: str) -> None:
         found = f"found {ALIKE[kind]}, " if kind in ALIKE else ""
         test = "; of a relaxation test F/(A strain) is one, with the area A" * (kind == "record")
         raise InputError(f"{path}: {found}expected moduli against time or frequency{test}")
+
+
+def _of_compliance(dynamic: bool) -> str:
+    """How compliances become moduli, for a message."""
+    if dynamic:
+        return ": E' = J'/(J'^2 + J''^2) and E'' = J''/(J'^2 + J''^2)"
+    return (
+        ": E(t) = sin(pi n)/(pi n J(t)) with the slope n = d ln J/d ln t, which is exact for a "
+        "power law"
+    )
 
 
 def _sets(frame: pd.DataFrame) -> str:

@@ -6,6 +6,9 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from .. import _library
 from .._library import InputError, UsageError
@@ -13,7 +16,11 @@ from .._text import option
 from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
 from .labels import UNLABELLED, Label, read_label
 from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
+from .select import Where, conditions
 from .units import plain_unit, size
+
+#: Heads that a message shows
+MOST_HEADS = 12
 
 
 @dataclass
@@ -65,12 +72,16 @@ class Choice:
         columns: Mapping[str, str | int] | Sequence[str] | None,
         units: Mapping[str, str] | Sequence[str] | str | None,
         files: int = 1,
+        where: Where = None,
     ) -> None:
+        #: Which rows are taken
+        self.where = conditions(where)
         #: Whether what one file lacks may stand in another
         self.shared = files > 1
         #: Texts of `columns` that a file had, and heads of the files
         self._seen: set[str] = set()
         self._heads: dict[str, None] = {}
+        columns, units = _texts(columns, "columns"), _texts(units, "units")
         if isinstance(columns, str):
             columns = columns.split(",")
         #: Names of the columns of a file without a head, in their order
@@ -133,13 +144,73 @@ class Choice:
             or (text.isdigit() and 0 < int(text) <= len(table.heads))
         }
 
+    def select(self, grid: Grid) -> Grid:
+        """Rows of the sheets that are taken."""
+        for one in self.where:
+            if plain(one.name) != "sheet" or not any(row.sheet for row in grid.rows):
+                continue
+            taken, rows = True, []
+            for row in grid.rows:
+                taken = one.takes(row.text) if row.sheet else taken
+                if taken:
+                    rows.append(row)
+            if not one.met:
+                raise one.refusal(f"{grid.path} has")
+            grid = replace(grid, rows=rows)
+        return grid
+
+    def filter(self, table: Table) -> bool:
+        """Leave the rows of a table that are taken; whether there are any."""
+        for one in self.where:
+            at = [i for i, head in enumerate(table.heads) if _matches(head, one.name)]
+            if not at and plain(one.name) == "line":
+                table.parts = [
+                    (title, [row for row in rows if one.takes(str(row.line))])
+                    for title, rows in table.parts
+                ]
+                continue
+            if not at and one.name.isdigit() and 0 < int(one.name) <= len(table.heads):
+                at = [int(one.name) - 1]
+            if len(at) != 1 or plain(one.name) == "temperature":
+                continue
+            column = Column(at[0], table.heads[at[0]])
+            table.parts = [
+                (title, [row for row in rows if one.takes(column.cell(row))])
+                for title, rows in table.parts
+            ]
+        return any(rows for _, rows in table.parts)
+
     def refuse_unseen(self, where: str) -> None:
+        """Refuse a text of `columns` that no file had, and a condition that took no row."""
+        for one in self.where:
+            if not one.met:
+                raise one.refusal(where)
+        self.refuse_unread(where)
+
+    def refuse_unread(self, where: str) -> None:
         """Refuse a text of `columns` that no file had."""
         for text, _ in self.columns.values():
             if text not in self._seen:
-                known = ", ".join(f"'{one}'" for one in self._heads)
+                known = ", ".join(f"'{one}'" for one in [*self._heads][:MOST_HEADS])
+                known += ", ..." * (len(self._heads) > MOST_HEADS)
                 raise UsageError(f"{option('columns')}: {where} no column '{text}', expected one "
                                  f"of {known}")  # fmt: skip
+
+
+def _texts(given: Any, name: str) -> Any:
+    """What a user says of columns: a text, texts, or texts by their names; else refused."""
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
+    if given is None or isinstance(given, str):
+        return given
+    words = given
+    if isinstance(given, Mapping):
+        # a column may be a number
+        words = [*given, *(str(one) if name == "columns" else one for one in given.values())]
+    if not isinstance(words, Sequence) or not all(isinstance(one, str) for one in words):
+        raise UsageError(f"{option(name)}: found {given!r:.60}, expected texts, or texts by the "
+                         "names of quantities")  # fmt: skip
+    return given
 
 
 def _named(key: str) -> tuple[str, float]:
@@ -295,6 +366,8 @@ def _table(
 def _shifted(grid: Grid, line: int, units: Sequence[str], heads: Sequence[Head]) -> str:
     """What is wrong with a line of units that has fewer cells than the names, or more."""
     need, n = len(heads), len(units)
+    if grid.separator == "xlsx":
+        return ""
     while need and heads[need - 1].si in ("", "1"):
         need -= 1
     if need <= n and not any(cell.strip() for cell in units[len(heads) :]):
@@ -484,11 +557,13 @@ def _same(table: Table, one: Column, other: Column) -> bool:
         cells = one.cell(row), other.cell(row)
         if is_missing(cells[0]) and is_missing(cells[1]):
             continue
-        if not all(map(is_number, cells)):
+        if not all(is_number(cell) and math.isfinite(number(cell)) for cell in cells):
             return False
         values = [number(c) * s[0] + s[1] for c, s in zip(cells, scales, strict=True)]
-        slack = max(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
-        if abs(values[0] - values[1]) > 1.01 * slack + 1e-12 * abs(values[0]):
+        # each is rounded for itself
+        slack = sum(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
+        # at the sum itself only ties are rounded apart, such as 2.5 to 2 and 3
+        if abs(values[0] - values[1]) > max((1 - 1e-9) * slack, 1e-12 * abs(values[0])):
             return False
     return True
 
