@@ -65,7 +65,8 @@ contains
          //'alone, '//short(sweep%problem%impact%mass)//' kg, as if the second one could not ' &
          //'move; two free spheres need their reduced mass, m1 m2/(m1 + m2)'
       call case%get('contact', 'mechanics', mechanics)
-      if (mechanics == 'exact' .and. case%has_second_sphere() .and. .not. case%given('plate', 'waves')) &
+      if (mechanics == 'exact' .and. case%has_second_sphere() &
+          .and. .not. case%given('plate', 'waves')) &
          write (error_unit, '(a)') 'vcor: note: '//case%location('contact', 'mechanics') &
          //": two spheres are no half space: mechanics = 'exact' leaves plate.waves = 'none'"
       if (case%given('impact', 'temperature') .or. any(swept_addresses(case) &
