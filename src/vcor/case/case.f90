@@ -516,8 +516,8 @@ contains
    end function has_second_sphere
 
    !> Set the keys of the mechanics that the user has not given. By `mechanics` waves, law and
-   !> pair; without it a plate on a base has no waves, and with it a second sphere has none either. Law and
-   !> pair are also those of the coupled contact where that is solved
+   !> pair; without it a plate on a base has no waves, and with it a second sphere has none either.
+   !> Law and pair are also those of the coupled contact where that is solved
    pure subroutine choose_mechanics(self)
       type(case_t), intent(inout) :: self
 
