@@ -20,7 +20,8 @@ module vcor_solver
 
    !> The method `auto`: the coupled contact for waves in a plate of any thickness; product
    !> integration for the paper's variants, a frozen plate, the second Volterra term and going on
-   !> after the separation; otherwise internal variables, and product integration if they fail. They
+   !> after the separation; otherwise internal variables, and product integration if they fail, or
+   !> if a structure strikes again after the first separation. They
    !> fail if no sum of exponentials represents the kernel: for a table whose data begin long after
    !> the end of the contact, for some pairs, and for exponents near a limit; and if a receding
    !> contact grows again
@@ -77,12 +78,12 @@ contains
       else if (settings%method == 'ive' .and. settings%ghost) then
          call refuse("only method = 'direct' continues after the separation", &
             'continue_after_separation method')
-      else if (settings%method == 'ive' .and. impact%plate%frozen()) then
+      else if (settings%method == 'ive' .and. impact%target%frozen()) then
          call refuse("waves = 'frozen' are solved by method = 'direct' only", 'waves method')
       else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
          call refuse('the second term of the Volterra series has no meaning with a viscosity, ' &
             //'whose kernel is a delta function', 'volterra_order volterra_coefficient viscosity')
-      else if (impact%kernel_viscosity() > 0.0_wp .and. impact%plate%frozen()) then
+      else if (impact%kernel_viscosity() > 0.0_wp .and. impact%target%frozen()) then
          call refuse("a frozen plate is made for the paper's contacts, without a viscosity; use " &
             //"waves = 'relaxing'", 'waves viscosity')
       else if (impact%law%receding .and. two_terms) then
@@ -97,7 +98,7 @@ contains
       else if (impact%gravity > 0.0_wp .and. .not. is_product) then
          call refuse("adams_bashforth marches the paper's wave equation, without a weight; use " &
             //"method = 'ive', or 'direct' with scheme = 'product'", 'gravity scheme')
-      else if (impact%plate%hereditary() .and. .not. is_product) then
+      else if (impact%target%hereditary() .and. .not. is_product) then
          call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
             //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &
             'waves scheme')
@@ -126,7 +127,7 @@ contains
       if (.not. impact%face%is_built()) then
          call raise(error, error_input, "method = 'coupled' needs the face of the impact: " &
             //'new_face builds it', 'method')
-      else if (impact%plate%moves()) then
+      else if (impact%target%moves()) then
          call raise(error, error_input, "method = 'coupled' solves waves = 'body' or 'none', not " &
             //'those of a thin plate', 'method waves')
       else if (abs(settings%second_coefficient) > 0.0_wp) then
@@ -291,7 +292,7 @@ contains
          call self%coupled%solve(impact, trajectory, error)
          return
       end if
-      if (impact%plate%frozen() .or. self%settings%ghost &
+      if (impact%target%frozen() .or. self%settings%ghost &
           .or. abs(self%settings%second_coefficient) > 0.0_wp) then
          call self%product%solve(impact, trajectory, error)
          return
@@ -300,7 +301,8 @@ contains
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
-      else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
+      else if (trajectory%status /= contact_separated &
+               .or. .not. (trajectory%misses_by_far() .or. trajectory%returns)) then
          return
       end if
       call self%product%solve(impact, trajectory, error)

@@ -33,7 +33,7 @@ module vcor_case_problem
    use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, face_t, &
       new_face
    use vcor_impact_layer_law, only : layer_t, lay, profile_t
-   use vcor_impact_plate, only : new_plate, waves_constant, waves_frozen, waves_hereditary, &
+   use vcor_impact_target, only : new_plate, waves_constant, waves_frozen, waves_hereditary, &
       waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
@@ -504,7 +504,7 @@ contains
 
       call new_contact_modulus(self%impact%modulus, self%sphere%material, self%plate%material, &
          self%sphere%data%deforms_as(self%plate%data), error, self%pair)
-      if (.not. allocated(error)) call new_plate(self%impact%plate, self%plate%material, &
+      if (.not. allocated(error)) call new_plate(self%impact%target, self%plate%material, &
          self%half_thickness, self%waves, error)
       if (.not. allocated(error)) call build_face(self, error)
       if (.not. allocated(error)) return

@@ -33,6 +33,8 @@ module vcor_solver_type
       real(wp) :: accuracy = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series, Eq. (10) [m^-1.5]; 0: without it
       real(wp) :: second_coefficient = 0.0_wp
+      !> End at the first separation from a structure, whether or not it is the last
+      logical :: first_contact = .false.
       !> Continue after the separation, to `end_time` or to twice the contact time
       logical :: ghost = .false.
    end type solver_settings_t
@@ -124,6 +126,11 @@ contains
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
             call outcome%settle(impact)
          if (all(outcome%status /= [contact_separated, contact_resting])) return
+         if (trajectory%returns .and. .not. solver%settings%first_contact) then
+            call raise(error, error_numerical, 'the structure strikes the sphere again after the ' &
+               //"first separation, which method = 'ive' does not follow: use method = 'auto'")
+            return
+         end if
          if (outcome%max_indentation > impact%law%deepest()) then
             write (depth, '(es9.2)') [outcome%max_indentation, impact%law%deepest()]
             call raise(error, error_numerical, 'the contact becomes wider than its law is known ' &
