@@ -5,17 +5,18 @@
 !> stages; the error of every result is the difference of the two. Where one exceeds the accuracy,
 !> the march is repeated with a lower tolerance.
 module vcor_solver_ive
-   use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_impulse, col_time, col_velocity, contact_separated, &
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t, new_bridge, new_rule, rule_t
+   use vcor_solver_features, only : ive, refuse_features
    use vcor_solver_ive_course, only : of_cor, of_cor_sphere, of_force, of_time
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_march, only : follow
-   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
+   use vcor_solver_type, only : default_accuracy, features_of, solver_settings_t, solver_t
    use vcor_tuning, only : ive_loosest, sum_share, sum_window
    implicit none
    private
@@ -53,12 +54,8 @@ contains
       type(solver_settings_t), intent(in) :: settings
       type(error_t), allocatable, intent(out) :: error
 
-      if (abs(settings%second_coefficient) > 0.0_wp .or. settings%ghost) then
-         call raise(error, error_input, "a second Volterra term and going on after the " &
-            //"separation are solved by method = 'direct' only", &
-            'volterra_order continue_after_separation')
-         return
-      end if
+      call refuse_features(by_ive(features_of(settings)), error)
+      if (allocated(error)) return
       self%settings = settings
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('ive')
       self%accuracy = min(self%settings%accuracy, ive_loosest)
@@ -66,6 +63,16 @@ contains
       if (.not. allocated(error)) call new_rule(self%rules(2), width - 1, error)
       if (.not. allocated(error)) call new_bridge(self%bridge, self%rules(1), self%rules(2))
    end subroutine new_ive
+
+   !> Features of an impact that is solved by this method
+   pure function by_ive(features) result(has)
+      !> Those of impact and settings, shape (n)
+      logical, intent(in) :: features(:)
+      logical :: has(size(features))
+
+      has = features
+      has(ive) = .true.
+   end function by_ive
 
    !> Compute the course of an impact: march, and again while an error exceeds the accuracy, with a
    !> lower tolerance or a better sum of exponentials, whichever it is that errs; the best counts.
@@ -84,11 +91,8 @@ contains
       real(wp) :: worst, last
       integer :: trial
 
-      if (impact%target%frozen()) then
-         call raise(error, error_input, "waves = 'frozen' are solved by method = 'direct' only", &
-            'waves method')
-         return
-      end if
+      call refuse_features(by_ive(features_of(self%settings, impact)), error)
+      if (allocated(error)) return
       effort%window = sum_window*impact%law%contact_time*impact%time_scale()
       call attempt(self, impact, effort, trajectory, worst, error)
       if (allocated(error) .or. trajectory%returns) return

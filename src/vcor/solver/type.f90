@@ -6,11 +6,14 @@ module vcor_solver_type
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : pi, wp
+   use vcor_solver_features, only : features, of_body, of_frozen_plate, of_ghost, of_gravity, &
+      of_hereditary_plate, of_layer, of_paper_scheme, of_receding, of_second_term, of_thin_plate, &
+      of_viscosity
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, method_for, light_plate, &
-      as_text
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, features_of, &
+      light_plate, as_text
 
    !> Length of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')
@@ -63,25 +66,27 @@ module vcor_solver_type
 
 contains
 
-   !> Method in use: `auto` is coupled for waves in a plate of any thickness, direct for the paper's
-   !> schemes and variants, and ive otherwise, which falls back to direct on failure
-   pure function method_for(method, scheme, has_body, has_variant) result(name)
-      !> Method requested: auto, ive, direct or coupled
-      character(len=*), intent(in) :: method
-      !> Scheme of the direct method requested
-      character(len=*), intent(in) :: scheme
-      !> Whether the impact has waves in a plate of any thickness
-      logical, intent(in) :: has_body
-      !> Whether it has a frozen plate or a second Volterra term, or goes on after the separation
-      logical, intent(in) :: has_variant
-      !> ive, direct or coupled
-      character(len=7) :: name
+   !> Features of an impact and of the settings of its solution, without the method
+   pure function features_of(settings, impact) result(has)
+      type(solver_settings_t), intent(in) :: settings
+      !> Absent: those of the settings only
+      type(impact_t), intent(in), optional :: impact
+      logical :: has(size(features))
 
-      name = method
-      if (method /= 'auto') return
-      name = merge('ive   ', 'direct', scheme == 'product' .and. .not. has_variant)
-      if (has_body) name = 'coupled'
-   end function method_for
+      has = .false.
+      has(of_second_term) = abs(settings%second_coefficient) > 0.0_wp
+      has(of_ghost) = settings%ghost
+      has(of_paper_scheme) = settings%scheme /= 'product'
+      if (.not. present(impact)) return
+      has(of_body) = impact%face%has_waves
+      has(of_thin_plate) = impact%target%moves()
+      has(of_hereditary_plate) = impact%target%hereditary()
+      has(of_frozen_plate) = impact%target%frozen()
+      has(of_layer) = impact%law%is_of_layer()
+      has(of_receding) = impact%law%receding
+      has(of_viscosity) = impact%kernel_viscosity() > 0.0_wp
+      has(of_gravity) = impact%gravity > 0.0_wp
+   end function features_of
 
    !> Accuracy of the coefficient of restitution if none is requested
    pure function default_accuracy(method) result(accuracy)

@@ -11,7 +11,8 @@ module vcor_verify_methods
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
       ieee_value
    use vcor_case_case, only : case_t
-   use vcor_case_problem, only : method_of, problem_t
+   use vcor_case_mechanics, only : method_of
+   use vcor_case_problem, only : problem_t
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t

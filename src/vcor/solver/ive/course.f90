@@ -5,6 +5,7 @@ module vcor_solver_ive_course
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t
+   use vcor_solver_ive_control, only : control_t
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
    use vcor_solver_ive_newton, only : solve_companion
@@ -44,20 +45,13 @@ module vcor_solver_ive_course
       real(wp) :: force_difference = 0.0_wp
       !> The panel solved last, accepted or not
       type(panel_t) :: previous
-      !> Difference of the two that a panel may add, over `speed`, and accuracy of events [-]
-      real(wp) :: tolerance = 0.0_wp, accuracy = 0.0_wp
       !> Time scale of the contact [s], and its reference velocity [m/s]
       real(wp) :: time_scale = 0.0_wp, speed = 0.0_wp
       !> End of the computation if the contact lasts [s]
       real(wp) :: end_time = 0.0_wp
-      !> The step, and the duration wanted for the next one [s]
+      !> The step, and the control of its duration
       type(step_t) :: step
-      real(wp) :: length = 0.0_wp
-      !> What the panel adds to the difference of the motion, over `speed` [-]
-      real(wp) :: growth = 0.0_wp
-      !> What the panel adds to the difference over what it may add, and that of the panel refused
-      !> before, and its duration [s]
-      real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp), refused_duration = 0.0_wp
+      type(control_t) :: control
       !> Whether the panel ends with the largest indentation, the contact, the computation
       logical :: turns = .false., ends = .false., reaches_end_time = .false.
       !> Times from the end of the panel to the end of the contact in the two solutions [s]
@@ -68,17 +62,8 @@ module vcor_solver_ive_course
       real(wp) :: kick = 0.0_wp
       !> Errors of the results, once the contact has ended
       real(wp) :: last_errors(4) = 0.0_wp
-      !> `excess` of the end refused before
-      real(wp) :: refused_end = huge(1.0_wp)
-      !> An end that was found [s], and the time before which it is not tried again [s]
-      real(wp) :: end_found = 0.0_wp, lead = 0.0_wp
-      !> Rebound: time left, and the duration allowed for the last panel [s]
-      real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
-      !> Rebound: t1' [-] and t1'' [1/s], for a guess
-      real(wp) :: rate = 0.0_wp, bend = 0.0_wp
-      !> Rebound: number of panels in which t1 seems to rise, and the end of the first one [s]
-      integer :: growths = 0
-      real(wp) :: growth_end = 0.0_wp
+      !> Rebound: time left [s], and t1' [-] and t1'' [1/s], for a guess
+      real(wp) :: rest = 0.0_wp, rate = 0.0_wp, bend = 0.0_wp
    contains
       procedure :: begin
       procedure :: record
@@ -324,7 +309,7 @@ contains
          left = self%fine%tolerance*real(panels, wp)
          factor = 1.0_wp
          if (panel%indentation(n) < near_branch*panel%indentation(0)) factor = at_branch
-         least = min((self%added + left)*self%speed/v0, ive_harmless*self%accuracy)
+         least = min((self%added + left)*self%speed/v0, ive_harmless*self%control%accuracy)
          ! the two solutions start each panel from one state
          if (allocated(self%fine%sums%vibration)) least = (self%added + left)*self%speed/v0
          error(of_cor:of_cor_sphere) = max(factor*abs(fine - coarse)/v0, least) &
@@ -338,7 +323,7 @@ contains
             *panel%time(n)
          ! what one panel adds enters the force in full
          error(of_force) = max(at_branch*self%force_difference, min(self%added*self%speed/v0, &
-            ive_share*self%accuracy)*max_force)
+            ive_share*self%control%accuracy)*max_force)
       end associate
    end function errors
 
@@ -431,7 +416,7 @@ contains
          beyond = -0.5_wp*slopes(j)**2/sum(rule%derivative(j, :)*slopes)
          ! close to an end of the panel a parabola has it
          if (other < 0 .or. other > n .or. (j == 0 .or. j == n) &
-             .and. beyond >= 0.0_wp .and. beyond < ive_harmless*self%accuracy*value(j)) then
+             .and. beyond >= 0.0_wp .and. beyond < ive_harmless*self%control%accuracy*value(j)) then
             time = merge(self%fine%panel%step%duration, 0.0_wp, j == n)
             peak = value(j)
             if (other >= 0 .and. other <= n) peak = peak + beyond
@@ -446,8 +431,8 @@ contains
          difference = max(abs(peak - value_inside(self%coarse, of_indentation, theta)), &
             abs(value(j) - value_inside(self%coarse, of_indentation, rule%point(j))), &
             abs(value(other) - value_inside(self%coarse, of_indentation, rule%point(other))))
-         if (merge(1.0_wp, at_branch, of_indentation)*difference <= 0.5_wp*self%accuracy*peak) &
-            return
+         if (merge(1.0_wp, at_branch, of_indentation)*difference &
+             <= 0.5_wp*self%control%accuracy*peak) return
          call solve_up_to_peak(self, of_indentation, time, peak, difference)
       end associate
 
