@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from ctypes import byref, c_void_p
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 from . import _library
 from ._library import DataRangeWarning, Error, Floats, ValidityWarning, call
 
-if TYPE_CHECKING:
-    from .case import Case
+#: A `Case`, whose module uses this one
+Case = Any
 
 #: Columns that the remarks are made from
 _JUDGED = ("validity", "validity_cause", "status", "contact_time", "cor")
