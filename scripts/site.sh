@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Makes the site of the documents, build/site/html/index.html: the pages of docs with a search, the notebook
 # of the tutorial executed, the references of the Python package and of the Fortran library. Builds the
-# library (scripts/setup.sh has what that needs) and installs Sphinx in build/site_venv. Stops at the first
-# warning of Sphinx. Not a part of scripts/test.sh; .github/workflows/site.yml runs it.
+# library (scripts/setup.sh has what that needs) and installs Sphinx in build/site_venv. The site needs no
+# network: MathJax and Bootstrap (Debian's libjs-bootstrap5) are in it. Stops at the first warning of Sphinx. Not a part of scripts/test.sh; .github/workflows/site.yml runs it.
 #
 #   scripts/site.sh
 set -euo pipefail
@@ -14,6 +14,7 @@ site=$top/build/site
 fail() { printf 'site: error: %s\n' "$*" >&2; exit 1; }
 
 [ $# -eq 0 ] || fail "unknown argument '$1', expected nothing"
+[ -d /usr/share/javascript/bootstrap5 ] || fail "no Bootstrap here; please apt-get install libjs-bootstrap5"
 cmake --preset release >/dev/null
 cmake --build --preset release --target vcor_python >/dev/null
 
@@ -29,6 +30,7 @@ rm -rf "$site"
 mkdir -p "$site"
 cp -r docs "$site/docs"
 cp docs/site/conf.py docs/site/python_api.md "$site/docs"
+cp README.md "$site/docs/index.md"
 cp examples/tutorial.ipynb "$site/docs"
 sed "s|](docs/|](|g" CHANGELOG.md >"$site/docs/changes.md"
 printf 'ROOT = %s\n' "$top" >"$site/docs/place"
@@ -41,5 +43,5 @@ ln -s "$top"/examples/{paper,sweeps,materials,identification} "$top"/examples/*.
 export VCOR_LIBRARY=$top/build/release/libvcor_python.so PYTHONPATH=$top/python/src
 "$venv/bin/python" -m sphinx -W --keep-going -q -b html "$site/docs" "$site/html"
 "$venv/bin/ford" -q -o "$site/html/fortran" docs/api.md
-cp "$site/html/README.html" "$site/html/index.html"
+python3 docs/site/offline.py "$site/html"
 printf 'site: %s\n' "$site/html/index.html"

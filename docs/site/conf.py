@@ -1,8 +1,10 @@
 """The site of the documents: Sphinx over a copy of docs that scripts/site.sh makes.
 
-The pages stay as they are on their own; what Sphinx wants otherwise is changed while it reads them.
+The pages stay as they are on their own; what Sphinx wants otherwise is changed while it reads them. The first
+page is the README of the repository.
 """
 
+import os
 import re
 import shutil
 from pathlib import Path
@@ -13,12 +15,21 @@ ROOT = Path(re.search("^ROOT = (.*)$", (SOURCE / "place").read_text(), re.M)[1])
 project = "vcor"
 author = "the vcor developers"
 release = version = re.search(r'^version = "(.*)"$', (ROOT / "fpm.toml").read_text(), re.M)[1]
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
-root_doc = "README"
-exclude_patterns = ["api.md", "site"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx-mathjax-offline"]
+root_doc = "index"
+exclude_patterns = ["README.md", "api.md", "site"]
 html_theme = "furo"
 html_title = f"vcor {release}"
-html_static_path = []
+html_static_path = ["site/static"]
+html_css_files = ["vcor.css"]
+html_logo = "site/logo.svg"
+highlight_language = "none"
+if "GITHUB_REPOSITORY" in os.environ:
+    html_theme_options = {
+        "source_repository": "{GITHUB_SERVER_URL}/{GITHUB_REPOSITORY}/".format(**os.environ),
+        "source_branch": "main",
+        "source_directory": "docs/",
+    }
 
 myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 4
@@ -32,11 +43,11 @@ suppress_warnings = ["misc.highlighting_failure"]
 
 # The order in which a reader needs the pages
 PARTS = {
-    "Begin": ["installation", "getting_started", "which_model", "tutorial"],
+    "Begin": ["installation", "getting_started", "which_model", "recipes", "tutorial"],
     "Inputs": ["materials", "data", "fitting", "dma_to_restitution"],
-    "Is it valid": ["validity", "impact", "layers", "accuracy", "faq"],
-    "Sweeps and figures": ["sweeps", "figures", "gallery", "python", "distributed"],
-    "Recipes": ["recipes", "rebound", "identification", "exchange", "cards", "measurements"],
+    "Is it valid": ["validity", "impact", "layers", "structures", "accuracy", "faq"],
+    "Sweeps and figures": ["sweeps", "figures", "page", "gallery", "python", "distributed"],
+    "From and to measurements and codes": ["rebound", "identification", "measurements", "exchange", "cards"],
     "Reference": ["commands", "input", "output", "library", "python_api", "reference_impacts",
                   "glossary"],
     "Theory": ["theory", "reproducing_the_paper", "numerics", "appendix_accuracy",
@@ -48,7 +59,7 @@ PARTS = {
 def toctree():
     """Every page of the site, by its part."""
     named = {page for pages in PARTS.values() for page in pages}
-    found = {path.stem for path in SOURCE.glob("*.md")} - {"README", "api"}
+    found = {path.stem for path in SOURCE.glob("*.md")} - {"README", "index", "api"}
     extra = sorted(found - named)
     parts = PARTS if not extra else {**PARTS, "More": extra}
     text = ""
@@ -67,15 +78,26 @@ def link(folder):
         if target.endswith("tutorial.ipynb"):
             return f"[{words}](tutorial.ipynb)"
         path = (folder / target.partition("#")[0]).resolve()
+        if path == (ROOT / "README.md").resolve():
+            return f"[{words}](index.md)"
         outside = path.suffix == ".md" and not path.is_relative_to(SOURCE.resolve())
         return words if path.is_dir() or outside else found[0]
 
     return change
 
 
+def start(text):
+    """The README as the first page: no badge, its folder is one above that of the pages."""
+    text = re.sub(r"^\[!\[.*?\]\([^)]*\)\]\([^)]*\) ", "", text, flags=re.M)
+    text = re.sub(r"\[([^\]]+)\]\(docs/README.md\)", r"\1", text)
+    text = text.replace('src="docs/', 'src="').replace("](docs/", "](")
+    return re.sub(r"\]\((?=examples/|CONTRIBUTING|CITATION|LICENSE)", "](../", text)
+
+
 def prepare(_app, name, source):
     """Mathematics in blocks as MyST has it; a list of all pages below the first."""
-    text = re.sub("^```math$", "```{math}", source[0], flags=re.M)
+    text = start(source[0]) if name == root_doc else source[0]
+    text = re.sub("^```math$", "```{math}", text, flags=re.M)
     if name != "tutorial":
         folder = (SOURCE / name).parent
         text = re.sub(r"\[([^\]]+)\]\((\.\./[^)\s]+)\)", link(folder), text)
