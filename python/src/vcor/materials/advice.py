@@ -109,7 +109,7 @@ def next_measurement(problem: Problem, x: Floats, covariance: Floats) -> str:
         if left < best:
             best, where = left, j
     if where is None or best > HELPS**2:
-        return "no single measurement of an impact would help much"
+        return "no single further impact would help much"
     name, speed = NEXT[where % len(NEXT)], grid[where // len(NEXT)]
     worst = free[int(np.argmax(now))]
     before, after = (percent(math.sqrt(part * now.max())) for part in (1.0, max(best, 0.0)))

@@ -77,7 +77,7 @@ def report(found: Identified) -> str:
         seen += f" at its reference temperature, {kelvin:.2f} K"
     lines += ["", seen]
     if {row["quantity"] for row in found.data} <= {*COEFFICIENTS}:
-        lines += ["these are coefficients only: the scale of times rests on what is not free"]
+        lines += ["these are coefficients, which do not fix the scale of times: it comes from what is not free"]
     if found.loss_tangents:
         lines += [
             "",
