@@ -34,6 +34,11 @@ LOSS_FACTOR = "10%"
 OBLIQUE = 3.9
 #: Error of an angle [degrees] and of a restitution that are read from a figure
 ANGLE, READING = 0.15, 0.005
+#: Frequency up to which the data sheet of Sorbothane has moduli [Hz]; above it are digitised ones
+SHEET = 60.0
+#: Radii of a plunger whose shape is not known [m]
+PLUNGERS = 0.006, 0.0125
+POUND_PER_CUBIC_FOOT = 16.0185
 #: Solids whose slope is compared with that of Kelvin-Voigt: keys of &material; three are drawn
 SOLIDS = {
     "standard solid, 1:10": {"model": "sls", "glassy_modulus": 1e8, "alpha": 1e4, "beta": 1e5},
@@ -656,6 +661,55 @@ def resilience():
         ["v [m/s]", "measured 1000 (1 − e)", "predicted 1000 (1 − e)"], *steps)  # fmt: skip
 
 
+# ---------------------------------------------------------------- three grades of one rubber
+
+
+def sorbothane():
+    """Vertical rebound of three grades from their moduli, with everything that the sheet does not say varied."""
+    made, (left, right) = panels("upper left", "lower right")
+    moduli, rows = data("sorbothane_moduli"), []
+    for color, grade in zip(("C0", "C1", "C2"), data("sorbothane").itertuples(), strict=True):
+        known = moduli[moduli.durometer_shore_00 == grade.durometer_shore_00]
+        found = {"none": [], "body": []}
+        for most in (SHEET, np.inf):
+            seen = known[known.frequency <= most]
+            omega = 2 * pi * seen.frequency.values
+            storage = seen.storage_modulus.values
+            fit = vcor.fit([omega, storage, storage * seen.loss_tangent.values], name="sorbothane",
+                           model="mittag_leffler" if most > SHEET else "power_law",
+                           density=grade.density * POUND_PER_CUBIC_FOOT)  # fmt: skip
+            one = case("sorbothane")
+            one.add(vcor.Case(fit.group))
+            for waves, values in found.items():
+                for base in ("bonded", "sliding"):
+                    one["plate.waves"], one["plate.base"] = waves, base
+                    values += [one.solve({"sphere.radius": radius}, ["resilience", "peak_loss_tangent"])
+                               for radius in PLUNGERS]  # fmt: skip
+        tangent = found["none"][-1]["peak_loss_tangent"]
+        low, high = ({waves: 100 * end(one["resilience"] for one in values)
+                      for waves, values in found.items()} for end in (min, max))  # fmt: skip
+        name, at = f"{grade.durometer_shore_00} Shore 00", grade.durometer_shore_00
+        for waves, shift in (("none", -2), ("body", 2)):
+            middle = (low[waves] + high[waves]) / 2
+            measured(left, [at + shift], [middle], (high[waves] - low[waves]) / 2, color=color,
+                     fmt="s" if waves == "none" else "D",
+                     label={"none": "without waves", "body": "with waves"}[waves] if not rows else None)  # fmt: skip
+        measured(left, [at], [100 * grade.resilience], label=None if rows else "measured")
+        measured(right, known.frequency, known.loss_tangent, color=color, fmt="o", label=name)
+        frequency = 2 * pi * np.geomspace(5, 500, 40)
+        modulus = one.material("sorbothane").complex_modulus(frequency)
+        curve(right, frequency / (2 * pi), modulus.imag / modulus.real, color)
+        rows.append([name, f"{tangent:.2f}",
+                     *(f"{low[waves]:.0f} to {high[waves]:.0f} %" for waves in found),
+                     f"{100 * np.exp(-pi * tangent):.0f} %", f"{100 * grade.resilience:.0f} %"])  # fmt: skip
+    left.set(xlabel="hardness [Shore 00]", ylabel="resilience [%]", xlim=(20, 80), ylim=(0, 45))
+    right.set(xlabel="frequency [Hz]", ylabel="loss tangent", xscale="log", ylim=(0, 1))
+    legend(left)
+    legend(right)
+    return made, table(["grade", "tan δ at π/t₀", "predicted without waves", "with waves", "textbook",
+                        "measured"], *rows)  # fmt: skip
+
+
 #: Sections of the page, and the cases with the numbers that were put in
 PARTS = {
     "alumina": (alumina, "examples/alumina_on_glass"),
@@ -664,6 +718,7 @@ PARTS = {
     "golf": (golf, "data/measurements/golf_ball"),
     "rebound": (resilience, "examples/identification/resilience",
                 "data/measurements/bouncing_ball"),
+    "sorbothane": (sorbothane, "data/measurements/sorbothane"),
     "spheres": (acetate, "data/measurements/acetate_pair", "data/measurements/acetate_on_wall",
                 "data/measurements/glass_on_wall", "data/measurements/granite_spheres"),
     "ice": (ice, "data/measurements/ice"),

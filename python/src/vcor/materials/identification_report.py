@@ -77,7 +77,7 @@ def report(found: Identified) -> str:
         seen += f" at its reference temperature, {kelvin:.2f} K"
     lines += ["", seen]
     if {row["quantity"] for row in found.data} <= {*COEFFICIENTS}:
-        lines += ["these are coefficients, which do not fix the scale of times: it comes from what is not free"]
+        lines += ["these are coefficients, which leave the scale of times to what is fixed"]
     if found.loss_tangents:
         lines += [
             "",
