@@ -9,7 +9,7 @@ import pytest
 import vcor
 from vcor import _command
 from vcor.materials.data import curves, read_data
-from vcor.materials.observations import read_columns
+from vcor.materials.observations import observations
 from vcor.materials.select import Condition, conditions
 from vcor.materials.tables import Choice
 
@@ -178,20 +178,43 @@ def pulses(starts, width=2e-3, step=1e-4, end=0.6):
 
 
 def test_a_record_of_several_impacts(tmp_path, sls):
+    """Each is a record of its own, at the velocity that the flight before it ends with."""
     path = write(tmp_path, pulses([0.01, 0.3, 0.5]))
-    with pytest.raises(vcor.InputError, match=r"data.csv:30\d\d: found impact 2 of 3") as caught:
-        read_columns(path, sls)
-    # the advice leads to one impact
-    line = str(caught.value).partition("{'line': '")[2].partition("'}")[0]
-    columns, _, _ = read_columns(path, sls, (), Choice(None, None, where={"line": line}))
-    assert columns["force"].max() > 95 and 0.1 < columns["time"][-1] < 0.3
-    head, *rows = pulses([0.01, 0.3]).replace(",", ",-").replace("--", "").splitlines()
-    negative = write(tmp_path, "\n".join([head.replace("-", ""), *rows]))
-    with pytest.raises(vcor.InputError, match="found impact 2 of 2"):
-        read_columns(negative, sls)
+    found = observations(sls, path, ["rubber.beta"])
+    speeds = [one.settings["impact.velocity"] for one in found]
+    # flights of 288 ms and 198 ms
+    assert speeds == pytest.approx([10.0, 9.80665 * 0.144, 9.80665 * 0.099], rel=3e-3)
+    assert [round(one.scale[0]) for one in found] == pytest.approx([100, 70, 49], abs=2)
+    assert all(np.ptp(one.at) < 0.02 for one in found)
+    assert found[0].taken.endswith("; 3 impacts at 10, 1.412, 0.9709 m/s, by the times in flight")
+    # as columns, and with a sensor that is turned
+    data = read_data(path)
+    columns = {"time": data.time.to_numpy(), "force": -data.force.to_numpy()}
+    assert [one.turned for one in observations(sls, columns, ["rubber.beta"])] == [True] * 3
     # contacts that follow one another belong to one impact, and so does a record of one
     for starts in ([0.01, 0.014, 0.02], [0.2]):
-        assert len(read_columns(write(tmp_path, pulses(starts)), sls)[0]["time"]) == 6000
+        (one,) = observations(sls, write(tmp_path, pulses(starts)), ["rubber.beta"])
+        assert len(one.at) == 6000
+
+
+def test_a_record_of_repeated_drops(tmp_path, sls):
+    """Their velocities are in a column, or only one of them can be taken."""
+    sls["impact.velocity"] = 1.0
+    path = write(tmp_path, pulses([0.01, 0.3, 0.5]))
+    with pytest.raises(vcor.InputError, match=r"data.csv:30\d\d: found impact 2 of 3") as caught:
+        observations(sls, path, ["rubber.beta"])
+    assert "at 1.41 m/s by its time in flight after 1 m/s" in str(caught.value)
+    # the advice leads to one impact
+    line = str(caught.value).partition("{'line': '")[2].partition("'}")[0]
+    (one,) = observations(sls, path, ["rubber.beta"], Choice(None, None, where={"line": line}))
+    assert one.value.max() > 95 and 0.1 < one.at[-1] < 0.3
+    head, *rows = pulses([0.01, 0.3]).splitlines()
+    speeds = ["1.5" if float(row.split(",")[0]) < 200 else "1.6" for row in rows]
+    rows = [f"{row},{speed}" for row, speed in zip(rows, speeds, strict=True)]
+    path = write(tmp_path, "\n".join([f"{head},velocity [m/s]", *rows]))
+    found = observations(sls, path, ["rubber.beta"])
+    assert [one.settings["impact.velocity"] for one in found] == [1.5, 1.6]
+    assert "1.5, 1.6 m/s, of their column" in found[0].taken
 
 
 @pytest.mark.parametrize(("head", "said"), [
