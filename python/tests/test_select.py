@@ -240,3 +240,113 @@ def test_the_advised_law_is_exact_for_a_power_law():
     # s^2 L(E) L(J) = 1 with L(t^-n) = Gamma(1 - n) s^(n - 1), L(t^n) = Gamma(1 + n) s^(-1 - n)
     compliance = time**n / (math.gamma(1 - n) * math.gamma(1 + n))
     assert math.sin(math.pi * n) / (math.pi * n * compliance) == pytest.approx(time**-n, rel=1e-12)
+
+
+# ------------------------------------------------------------------------------ side by side
+
+
+HERTZ = np.geomspace(0.1, 100, 8)
+
+
+def columns_of(head, *columns):
+    rows = [",".join(f"{x:.6g}" for x in row) for row in zip(*columns, strict=True)]
+    return "\n".join([head, *rows]) + "\n"
+
+
+@pytest.mark.parametrize("head", [
+    "f [Hz],E' [Pa],E'' [Pa],E' [Pa],E'' [Pa]",
+    "f [Hz],E'_1 [Pa],E''_1 [Pa],E'_2 [Pa],E''_2 [Pa]",
+    "f [Hz],Storage modulus (1) [Pa],Loss modulus (1) [Pa],Storage modulus (2) [Pa],"
+    "Loss modulus (2) [Pa]",
+    "f [Hz],Run 1: E' [Pa],Run 1: E'' [Pa],Run 2: E' [Pa],Run 2: E'' [Pa]",
+    "f [Hz],E' rep 3 [Pa],E'' rep 3 [Pa],E' rep 5 [Pa],E'' rep 5 [Pa]",
+    "f [Hz],Rep 1,,Rep 2,\n,E' [Pa],E'' [Pa],E' [Pa],E'' [Pa]",
+])  # fmt: skip
+def test_replicates_side_by_side(tmp_path, head):
+    """Each is a run of its own; the frequencies of one column are those of all."""
+    storage, loss = 1e6 * (1 + HERTZ), 5e5 * (1 + HERTZ**0.5)
+    text = columns_of(head, HERTZ, storage, loss, 1.02 * storage, 0.97 * loss)
+    data = read_data(write(tmp_path, text))
+    assert "2 runs are one curve" in data.attrs["taken"]
+    (one,) = curves(data)
+    first, second = (one[one["set"] == run] for run in (0, 1))
+    assert np.allclose(first.storage_modulus, storage, rtol=1e-5)
+    assert np.allclose(second.storage_modulus, 1.02 * storage, rtol=1e-5)
+    assert np.allclose(second.loss_modulus, 0.97 * loss, rtol=1e-5)
+    # as they would be one below the other
+    assert np.allclose(first.frequency, second.frequency)
+
+
+def test_replicates_with_their_own_frequencies_and_failed_points(tmp_path):
+    storage, loss = 1e6 * (1 + HERTZ), 5e5 * (1 + HERTZ**0.5)
+    head = "f_1 [Hz],E'_1 [Pa],E''_1 [Pa],f_2 [Hz],E'_2 [Pa],E''_2 [Pa],Average E' [Pa]"
+    text = columns_of(head, HERTZ, storage, loss, 1.1 * HERTZ, 1.02 * storage, loss, storage)
+    lines = text.splitlines()
+    lines[3] = lines[3].rsplit(",", 3)[0] + ",---,---,5"
+    (one,) = curves(read_data(write(tmp_path, "\n".join(lines))))
+    assert len(one) == 15 and one.attrs["runs"] == 2
+    second = one[one["set"] == 1]
+    assert np.allclose(second.frequency, np.delete(2 * np.pi * 1.1 * HERTZ, 2), rtol=1e-5)
+
+
+@pytest.mark.parametrize("head", [
+    "drop height [cm],rebound height trial 1 [cm],rebound height trial 2 [cm]",
+    "drop height [cm],Trial 1 rebound height [cm],Trial 2 rebound height [cm]",
+    "drop height [cm],rebound height (run 1) [cm],rebound height (run 2) [cm]",
+])  # fmt: skip
+def test_trials_of_impacts_side_by_side(tmp_path, head):
+    data = read_data(write(tmp_path, head + "\n50,30,31\n100,58,60\n"))
+    assert data.drop_height.tolist() == pytest.approx([0.5, 1.0, 0.5, 1.0])
+    assert data.rebound_height.tolist() == pytest.approx([0.3, 0.58, 0.31, 0.6])
+
+
+@pytest.mark.parametrize("head", [
+    "drop height [cm],h_2 [cm],h_3 [cm]", "drop height [cm],rebound height 1 [cm],bounce 2 [cm]",
+    "drop height [cm],rebound height [cm],rebound height [cm]",
+])  # fmt: skip
+def test_bounces_one_after_the_other_are_no_trials(tmp_path, head):
+    with pytest.raises(vcor.InputError):
+        read_data(write(tmp_path, head + "\n50,30,31\n100,58,60\n"))
+
+
+def test_the_average_of_trials_is_none(tmp_path):
+    head = "v [m/s],cor (trial 1),cor (trial 2),Average cor\n1,0.8,0.82,0.81\n2,0.7,0.72,0.71\n"
+    data = read_data(write(tmp_path, head))
+    assert data.cor.tolist() == [0.8, 0.7, 0.82, 0.72] and "Average cor" in data.attrs["taken"]
+
+
+# ----------------------------------------------------------------------------- steps of strain
+
+
+@pytest.mark.parametrize(("head", "strain"), [
+    ("time [s],stress [MPa],strain [%]", 2.0), ("Zeit [s],Spannung [MPa],Dehnung", 0.02),
+    ("t [s],compressive stress [MPa],compressive strain [%]", 2.02),
+])  # fmt: skip
+def test_a_step_of_strain(tmp_path, head, strain):
+    """The modulus is the stress over the strain, which a machine holds to some percent."""
+    stress = 0.5 / (1 + HERTZ)
+    text = columns_of(head, HERTZ, stress, np.where(HERTZ < 1, strain, 0.98 * strain))
+    data = read_data(write(tmp_path, text))
+    share = 0.01 if strain == 2.02 else 0.0
+    found = data.relaxation_modulus.to_numpy() / (1e6 * stress / 0.02)
+    expected = np.where(HERTZ < 1, 1, 1 / 0.98) / (1 + share)
+    assert data.attrs["kind"] == "relaxation" and found == pytest.approx(expected, rel=1e-5)
+    assert " over " in data.attrs["taken"] and not {"stress", "strain"} & {*data}
+
+
+def test_shear_stress_makes_shear_moduli(tmp_path):
+    text = columns_of("t [s],shear stress [Pa],shear strain [%]", HERTZ, 1 / HERTZ, 0 * HERTZ + 1)
+    assert read_data(write(tmp_path, text)).attrs["shear"] is True
+
+
+@pytest.mark.parametrize(("head", "stress", "strain", "says"), [
+    ("t [s],stress [Pa],strain [%]", 0 * HERTZ + 5, 1 + HERTZ, "of a creep test, whose compliance"),
+    ("t [s],stress [Pa],strain [%]", 1 + HERTZ, 1 + HERTZ, "after a step of strain; where="),
+    ("t [s],stress [Pa],x", 1 + HERTZ, HERTZ, "a column strain [%] beside it"),
+    ("t [s],x,strain [%]", HERTZ, 1 + HERTZ, "strain over the stress is the compliance"),
+    ("x,stress [Pa],strain [%]", 1 + HERTZ, 1 + HERTZ, "no column of the time"),
+])  # fmt: skip
+def test_stress_and_strain_that_make_no_modulus(tmp_path, head, stress, strain, says):
+    with pytest.raises(vcor.InputError) as caught:
+        read_data(write(tmp_path, columns_of(head, HERTZ, stress, strain)))
+    assert says in str(caught.value)

@@ -21,7 +21,7 @@ from .labels import unified
 from .names import read_head
 from .reader import SAME_TEMPERATURE, Reader, refuse_all_but_moduli
 from .select import Where
-from .tables import Choice
+from .tables import REPLICATES, Choice
 from .units import ZERO_C
 
 if TYPE_CHECKING:
@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 Columns = Mapping[str, str | int] | Sequence[str] | None
 Units = Mapping[str, str] | Sequence[str] | str | None
 
-#: Logarithm of a factor by which replicates differ at most: specimens of a material scatter by some
-#: percent, while moduli at temperatures between which it relaxes differ by more than this
-REPLICATES = 0.2
 MODULI = {"relaxation_modulus", "storage_modulus", "loss_modulus"}
 #: Relative difference of the frequencies of a sweep of temperatures at one frequency
 SAME_FREQUENCY = 0.01

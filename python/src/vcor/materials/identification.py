@@ -102,10 +102,11 @@ def identify(
         `drop_height`, `temperature`, `radius`, `mass` or any address, and measured columns of the
         summary, such as `cor`, `cor_sphere`, `resilience`, `rebound_height`, `contact_time`,
         `max_force`; `bounce_time` are the times in flight of one sequence of bounces. `time` and
-        `force` are a record of an impact, or of the bounces of a ball, which are split; `time` and `relaxation_modulus`, or `frequency`,
-        `storage_modulus` and `loss_modulus`, are moduli of the material that is free. NAME_sigma
-        is the standard error of a column. Without errors all data have the same relative one. The
-        rounding of the data and the errors of the solution are added.
+        `force` are a record of an impact, or of the bounces of a ball, which are split; `time` and
+        `relaxation_modulus`, or `frequency`, `storage_modulus` and `loss_modulus`, are moduli of
+        the material that is free. NAME_sigma is the standard error of a column. Without errors all
+        data have the same relative one. The rounding of the data and the errors of the solution are
+        added.
     free
         Addresses of the parameters, all > 0; of a material with `model` they may be empty.
     fix

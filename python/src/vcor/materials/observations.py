@@ -46,9 +46,9 @@ SETTINGS = {
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Factor between neighbouring coefficients of restitution that no sequence of bounces has
 UNLIKE = 2.0
-#: Part of the largest force above which a pulse is one of an impact, in noise and without, and lengths of the longest
-#: pulse between impacts: a flight lasts far longer than a contact, and contacts with a beam or a
-#: plate that swings follow each other within some lengths
+#: Part of the largest force above which a pulse is one of an impact, in noise and without, and
+#: lengths of the longest pulse between impacts: a flight lasts far longer than a contact, and
+#: contacts with a beam or a plate that swings follow each other within some lengths
 PULSE, LEAST_PULSE, APART = 0.3, 0.1, 20.0
 #: Part of the largest force of a pulse at which its contact begins and ends, and lengths of a
 #: contact that are kept on each side of one of several
