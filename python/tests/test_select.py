@@ -350,3 +350,14 @@ def test_stress_and_strain_that_make_no_modulus(tmp_path, head, stress, strain, 
     with pytest.raises(vcor.InputError) as caught:
         read_data(write(tmp_path, columns_of(head, HERTZ, stress, strain)))
     assert says in str(caught.value)
+
+
+def test_samples_by_a_column_of_words(tmp_path):
+    """Curves of two materials are not one: the message says how one is taken."""
+    rows = [f"{name},{f:.6g},{size * (1 + f):.6g},{size:.6g}" for name, size in (("A", 1), ("B", 2))
+            for f in HERTZ]  # fmt: skip
+    path = write(tmp_path, "\n".join(["polymer,f [Hz],E' [MPa],E'' [MPa]", *rows]))
+    with pytest.raises(vcor.InputError, match=r"where={'polymer': 'A'} takes one of several"):
+        curves(read_data(path))
+    (one,) = curves(read_data(path, where={"polymer": "B"}))
+    assert np.allclose(one.loss_modulus, 2e6)

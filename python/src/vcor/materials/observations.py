@@ -55,6 +55,9 @@ PULSE, LEAST_PULSE, APART = 0.3, 0.1, 20.0
 TOUCH, BESIDE_PULSE = 0.01, 2.0
 #: What the name of a record has behind that of its file, if it is one of several
 IMPACT = " (impact "
+#: Most impacts of a table: a fit solves each some 500 times, which takes 0.03 s an impact on a thin
+#: plate, so a minute
+MOST_IMPACTS = 2000
 #: Relative error of the moduli of a model, with room: functions in double precision
 ERROR_OF_MODULI = 1e-11
 #: Accuracy with waves = 'body', where a finer one takes seconds
@@ -113,6 +116,10 @@ class Impacts:
         self.scale = np.abs(self.value)
         self._columns = np.repeat(np.arange(len(parts)), [len(rows) for _, rows, *_ in parts])
         n = max((len(column) for column in self.settings.values()), default=max(self._rows) + 1)
+        if n > MOST_IMPACTS:
+            raise InputError(f"{source}: found {n} impacts, expected at most {MOST_IMPACTS}, as a "
+                             "fit solves each some hundred times: take a part of the rows "
+                             f"({option('where')}), or means of repeated impacts")  # fmt: skip
         #: Velocity of each impact [m/s]
         self.velocity = self.settings.pop("impact.velocity", np.full(n, velocity_of(case)))
         if case["impact.drop_height"] is None:

@@ -87,10 +87,14 @@ class Reader:
         #: By column: the unit of its last digit in SI units, and its most significant digits
         self.digits: dict[str, tuple[float, int]] = {}
         self.left: list[str] = []
+        #: How a user takes the rows with one word of a column of words, empty: there is none
+        self.word = ""
         #: How many rows the user wants
         self.selected = ""
         #: Points that were left out, and why
         self.failed: list[str] = []
+        #: Whether a frequency is in Hz, kHz and the like
+        self.hertz = False
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
         #: Temperatures that are stated, but not sure
@@ -333,6 +337,7 @@ class Reader:
             if words:
                 how = option("where", {text: words[0]})
                 text += f" ({', '.join(words)}: {how} takes one)"
+                self.word = how
             self.left.append(text)
 
     def _frame(
@@ -361,6 +366,8 @@ class Reader:
             values[name] = self._numbers(rows, column, units.get(column.index, ""), name, kind)
             self.names.setdefault(name, column.head.text.strip())
             self.units[name] = column.head.si
+            unit = plain_unit(units.get(column.index, ""))
+            self.hertz |= name == "frequency" and unit.endswith("Hz")
             if column.head.shear is not None:
                 self._shear.append((column.head.shear, column.head.text))
         lines = [row.line for row in rows]
