@@ -334,6 +334,13 @@ def test_a_step_of_strain(tmp_path, head, strain):
     assert " over " in data.attrs["taken"] and not {"stress", "strain"} & {*data}
 
 
+@pytest.mark.parametrize("more", ["f [Hz]", "Phase angle [deg]", "tan delta"])
+def test_amplitudes_of_an_oscillation_are_no_step(tmp_path, more):
+    head, one = f"time [s],stress [Pa],strain [%],{more}", 0 * HERTZ + 1
+    with pytest.raises(vcor.InputError):
+        read_data(write(tmp_path, columns_of(head, HERTZ, 1 / HERTZ, one, HERTZ)))
+
+
 def test_shear_stress_makes_shear_moduli(tmp_path):
     text = columns_of("t [s],shear stress [Pa],shear strain [%]", HERTZ, 1 / HERTZ, 0 * HERTZ + 1)
     assert read_data(write(tmp_path, text)).attrs["shear"] is True

@@ -227,7 +227,10 @@ class Reader:
             return "relaxation" if times else "dynamic"
         if names & _DYNAMIC:
             return "dynamic"
-        if "relaxation_modulus" in names or (times and {"stress", "strain"} <= names):
+        # amplitudes of an oscillation are no step
+        oscillates = names & {"frequency", "loss_tangent", "phase_angle"}
+        step = times and {"stress", "strain"} <= names and not oscillates
+        if "relaxation_modulus" in names or step:
             return "relaxation"
         if "shift_factor" in names:
             return "shift"
@@ -820,6 +823,9 @@ class Reader:
         """A stress without the strain of its step, or a strain without its stress."""
         name = min(names)
         text = next(head.text.strip() for head in table.heads if head.name in names)
+        if len(names) > 1 and "frequency" in _known(table):
+            return InputError(f"{place}: found stress and strain of an oscillation, expected "
+                              "storage and loss modulus")  # fmt: skip
         if len(names) > 1:
             return InputError(f"{place}: found stress and strain, but no column of the time, "
                               f"expected one named as {QUANTITIES['time'].example}")  # fmt: skip
