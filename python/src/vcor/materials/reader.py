@@ -961,7 +961,9 @@ def _could_be(head: Head, names: set[str]) -> list[str]:
     """Quantities that a column may be by its unit, the likeliest one first."""
     told = quantities_of(head.unit) if head.unit else []
     found = [one.name for one in QUANTITIES.values() if one.unit in told]
-    found = [name for name in found if name not in ("run_time", "event_time", "angular_frequency")]
+    # what none is by its unit alone
+    never = ("run_time", "event_time", "angular_frequency", "stress", "strain")
+    found = [name for name in found if name not in never]
     if not found:
         found = ["relaxation_modulus", "storage_modulus", "force", "cor"]
     if "frequency" in names:
