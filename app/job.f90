@@ -160,8 +160,8 @@ contains
          if (contains_word(known, request%names(i)%text)) cycle
          if (index(request%names(i)%text, '.') > 0 .and. size(grid%axes) == 0) then
             call raise(error, error_usage, "found '"//printable(request%names(i)%text) &
-               //"' in --print, but the case sweeps nothing: its values are those that vcor check " &
-               //"prints; expected names of columns (vcor help output)")
+               //"' in --print, but the case sweeps nothing: its values are those that vcor " &
+               //"check prints; expected names of columns (vcor help output)")
             return
          end if
          call raise(error, error_usage, "unknown name '"//printable(request%names(i)%text) &

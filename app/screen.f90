@@ -55,7 +55,8 @@ contains
       text = heading(filename, title)
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are still in contact at '//short(time)//' s (method ' &
-            //method//' in '//steps_of(method, outcome)//'), status '//trim(status_name(outcome%status))//nl
+            //method//' in '//steps_of(method, outcome)//'), status ' &
+            //trim(status_name(outcome%status))//nl
       else
          text = text//answer(outcome, exact)//nl
          do i = 1, size(blocks)
