@@ -98,7 +98,7 @@ contains
       select case (path(max(index(path, '.', back=.true.), 1):))
       case ('.h5')
          error%message = error%message//'; vcor plot draws files of results'
-      case ('.xlsx')
+      case ('.xlsx', '.csv', '.tsv', '.txt', '.dat', '.lvm')
          error%message = error%message//'; vcor fit, master, identify and table read data'
       case default
          continue
@@ -160,7 +160,8 @@ contains
          if (contains_word(known, request%names(i)%text)) cycle
          if (index(request%names(i)%text, '.') > 0 .and. size(grid%axes) == 0) then
             call raise(error, error_usage, "found '"//printable(request%names(i)%text) &
-               //"' in --print, but the case sweeps nothing; expected names of columns")
+               //"' in --print, but the case sweeps nothing: its values are those that vcor " &
+               //"check prints; expected names of columns (vcor help output)")
             return
          end if
          call raise(error, error_usage, "unknown name '"//printable(request%names(i)%text) &

@@ -197,7 +197,7 @@ contains
       !> Error of code `error_numerical`; unallocated if the bodies separated or rest
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: time, too_light, reason
+      character(len=:), allocatable :: time, too_light, reason, waves, base
       real(wp) :: last, end_time
       logical :: was_short, gave_up
 
@@ -223,6 +223,10 @@ contains
             //'steps is missed, give a shorter solver.time_step'
          if (gave_up) reason = 'a contact this long needs too many steps to reach solver.end_time'
          if (too_light /= '' .and. .not. was_short) reason = too_light
+         call job%case%get('plate', 'waves', waves)
+         call job%case%get('plate', 'base', base)
+         if (waves == 'body' .and. base == 'free' .and. job%case%has_thickness()) reason = reason &
+            //'; this plate is free on both sides, one on a floor needs plate.base'
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
             //'within '//time//' s: '//reason)
       else

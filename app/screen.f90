@@ -54,18 +54,29 @@ contains
 
       text = heading(filename, title)
       if (outcome%status /= contact_separated) then
-         text = text//'  the bodies are still in contact at '//short(time)//' s ('//method//', ' &
-            //integer_text(outcome%steps)//' steps), status '//trim(status_name(outcome%status))//nl
+         text = text//'  the bodies are still in contact at '//short(time)//' s (method ' &
+            //method//' in '//steps_of(method, outcome)//'), status ' &
+            //trim(status_name(outcome%status))//nl
       else
          text = text//answer(outcome, exact)//nl
          do i = 1, size(blocks)
             if (blocks(i)%title == 'what decides the loss') text = text//budget(outcome)//nl
             text = text//block_text(blocks(i), outcome, exact)//nl
          end do
-         text = text//'  '//method//', '//integer_text(outcome%steps)//' steps'//nl
+         text = text//'  method '//method//' in '//steps_of(method, outcome)//nl
       end if
       text = text//files//nl
    end function report
+
+   !> Steps of a computation in words; of methods that choose them a few may be enough
+   pure function steps_of(method, outcome) result(text)
+      character(len=*), intent(in) :: method
+      type(outcome_t), intent(in) :: outcome
+      character(len=:), allocatable :: text
+
+      text = integer_text(outcome%steps)//trim(merge(' step ', ' steps', outcome%steps == 1))
+      if (method == 'ive' .or. method == 'coupled') text = text//', as many as the accuracy needs'
+   end function steps_of
 
    !> The answer in one line: the coefficient of restitution that an experiment reads, whether the
    !> model holds, and the exact value if that differs

@@ -408,7 +408,7 @@ def test_acceleration(tmp_path):
 
 BAD = {
     "stress": ("Time [s],Stress [Pa]\n1,5\n2,4\n",
-               [":1:", "'Stress [Pa]'", "(a stress over the strain)", "columns says"]),
+               [":1:", "the stress 'Stress [Pa]'", "the stress over the strain; a column strain"]),
     "loss tangent and temperature": ("T [C],tan delta\n20,0.1\n30,0.2\n", [
         "no column of the frequency and of the storage modulus", "tells no shifts"]),
     "temperatures at one frequency": ("T [C],E' [Pa],E'' [Pa]\n20,5,1\n30,4,1\n", [

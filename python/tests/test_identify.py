@@ -140,6 +140,12 @@ def test_record_of_force_with_unknown_start():
     assert found.relative_error < 2e-3
 
 
+def test_more_impacts_than_a_fit_takes_are_refused(sls):
+    speeds = np.linspace(1.0, 2.0, 2001)
+    with pytest.raises(vcor.InputError, match="found 2001 impacts, expected at most 2000"):
+        vcor.identify(sls, {"velocity": speeds, "cor": 0.4 + 0 * speeds}, ["rubber.beta"])
+
+
 def test_a_long_fit_says_so(monkeypatch):
     case, data = guess("sls"), columns()
     with warnings.catch_warnings():

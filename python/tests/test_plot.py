@@ -251,8 +251,21 @@ def test_measured_points(results, tmp_path):
     (tmp_path / "moduli.csv").write_text("f [kHz],storage_modulus [MPa]\n1,5\n2,6\n")
     made = figure([results / "sls_material.h5", tmp_path / "moduli.csv"])
     (bar,) = made.axes[1].containers
-    np.testing.assert_allclose(bar.lines[0].get_xdata(), 2e3 * np.pi * np.array([1, 2]))
+    # in the unit of the data, as the curves are
+    np.testing.assert_allclose(bar.lines[0].get_xdata(), [1e3, 2e3])
     np.testing.assert_allclose(bar.lines[0].get_ydata(), [5, 6])
+    assert made.axes[1].get_xlabel() == "frequency [Hz]"
+    alone = figure([results / "sls_material.h5"])
+    assert alone.axes[1].get_xlabel() == "angular frequency [rad/s]"
+    least, own = (one.axes[1].lines[0].get_xdata() for one in (made, alone))
+    np.testing.assert_allclose(2 * np.pi * least, own)
+    # one marker for each modulus
+    (tmp_path / "both.csv").write_text("w [rad/s],E' [MPa],E'' [MPa]\n1,5,1\n2,6,2\n")
+    made = figure([results / "sls_material.h5", tmp_path / "both.csv"])
+    marks = [one.lines[0].get_marker() for one in made.axes[1].containers]
+    assert len({*marks}) == 2 and made.axes[1].get_xlabel() == "angular frequency [rad/s]"
+    named = {text.get_text() for text in made.legends[0].get_texts()}
+    assert {"both: storage modulus", "both: loss modulus"} <= named
     (tmp_path / "force.csv").write_text("time [ms],force [N]\n0.5,500\n")
     made = figure([results / "sls_ghost.h5", tmp_path / "force.csv"])
     (bar,) = made.axes[0].containers
@@ -329,7 +342,7 @@ def test_moduli_of_a_fit(tmp_path):
     (tmp_path / "dynamic.txt").write_text("f, E_stor, E_loss\nHz, MPa, MPa\n1,5,1\n2,6,2\n")
     axes = figure([tmp_path / "soft.nml", tmp_path / "dynamic.txt"]).axes
     (bar,) = axes[1].containers[:1]
-    np.testing.assert_allclose(bar.lines[0].get_xdata(), 2 * np.pi * np.array([1, 2]))
+    np.testing.assert_allclose(bar.lines[0].get_xdata(), [1, 2])
 
 
 @pytest.mark.parametrize(
@@ -792,6 +805,20 @@ def test_labels_of_axes_and_points(tmp_path):
         vcor.plot.figure([sweep], labels="by film")
     with pytest.raises(vcor.UsageError, match="the panels have several"):
         vcor.plot.figure([sweep], quantities=["cor", "max_force"], ylabel="e")
+
+
+def test_validity_is_no_quantity_with_an_axis(results):
+    with pytest.raises(vcor.UsageError, match="validity is hatched behind every quantity"):
+        vcor.plot.figure([results / "sweep.h5"], quantities=["validity"])
+
+
+def test_points_beyond_the_data_are_marked(results):
+    sweep = vcor.open(results / "sweep.h5")
+    (axis,) = sweep.coords
+    out = np.arange(sweep.sizes[axis]) == 1
+    made = vcor.plot.figure(sweep.assign(beyond=(axis, out)))
+    (marks,) = [line for line in made.axes[0].lines if "beyond" in str(line.get_label())]
+    np.testing.assert_array_equal(marks.get_xdata(), sweep[axis].values[out])
 
 
 def test_moduli_at_several_temperatures_are_refused(results):

@@ -9,7 +9,7 @@ import pytest
 import vcor
 from vcor import _command
 from vcor.materials.data import curves, read_data
-from vcor.materials.observations import read_columns
+from vcor.materials.observations import observations
 from vcor.materials.select import Condition, conditions
 from vcor.materials.tables import Choice
 
@@ -178,20 +178,43 @@ def pulses(starts, width=2e-3, step=1e-4, end=0.6):
 
 
 def test_a_record_of_several_impacts(tmp_path, sls):
+    """Each is a record of its own, at the velocity that the flight before it ends with."""
     path = write(tmp_path, pulses([0.01, 0.3, 0.5]))
-    with pytest.raises(vcor.InputError, match=r"data.csv:30\d\d: found impact 2 of 3") as caught:
-        read_columns(path, sls)
-    # the advice leads to one impact
-    line = str(caught.value).partition("{'line': '")[2].partition("'}")[0]
-    columns, _, _ = read_columns(path, sls, (), Choice(None, None, where={"line": line}))
-    assert columns["force"].max() > 95 and 0.1 < columns["time"][-1] < 0.3
-    head, *rows = pulses([0.01, 0.3]).replace(",", ",-").replace("--", "").splitlines()
-    negative = write(tmp_path, "\n".join([head.replace("-", ""), *rows]))
-    with pytest.raises(vcor.InputError, match="found impact 2 of 2"):
-        read_columns(negative, sls)
+    found = observations(sls, path, ["rubber.beta"])
+    speeds = [one.settings["impact.velocity"] for one in found]
+    # flights of 288 ms and 198 ms
+    assert speeds == pytest.approx([10.0, 9.80665 * 0.144, 9.80665 * 0.099], rel=3e-3)
+    assert [round(one.scale[0]) for one in found] == pytest.approx([100, 70, 49], abs=2)
+    assert all(np.ptp(one.at) < 0.02 for one in found)
+    assert found[0].taken.endswith("; 3 impacts at 10, 1.412, 0.9709 m/s, by the times in flight")
+    # as columns, and with a sensor that is turned
+    data = read_data(path)
+    columns = {"time": data.time.to_numpy(), "force": -data.force.to_numpy()}
+    assert [one.turned for one in observations(sls, columns, ["rubber.beta"])] == [True] * 3
     # contacts that follow one another belong to one impact, and so does a record of one
     for starts in ([0.01, 0.014, 0.02], [0.2]):
-        assert len(read_columns(write(tmp_path, pulses(starts)), sls)[0]["time"]) == 6000
+        (one,) = observations(sls, write(tmp_path, pulses(starts)), ["rubber.beta"])
+        assert len(one.at) == 6000
+
+
+def test_a_record_of_repeated_drops(tmp_path, sls):
+    """Their velocities are in a column, or only one of them can be taken."""
+    sls["impact.velocity"] = 1.0
+    path = write(tmp_path, pulses([0.01, 0.3, 0.5]))
+    with pytest.raises(vcor.InputError, match=r"data.csv:30\d\d: found impact 2 of 3") as caught:
+        observations(sls, path, ["rubber.beta"])
+    assert "at 1.41 m/s by its time in flight after 1 m/s" in str(caught.value)
+    # the advice leads to one impact
+    line = str(caught.value).partition("{'line': '")[2].partition("'}")[0]
+    (one,) = observations(sls, path, ["rubber.beta"], Choice(None, None, where={"line": line}))
+    assert one.value.max() > 95 and 0.1 < one.at[-1] < 0.3
+    head, *rows = pulses([0.01, 0.3]).splitlines()
+    speeds = ["1.5" if float(row.split(",")[0]) < 200 else "1.6" for row in rows]
+    rows = [f"{row},{speed}" for row, speed in zip(rows, speeds, strict=True)]
+    path = write(tmp_path, "\n".join([f"{head},velocity [m/s]", *rows]))
+    found = observations(sls, path, ["rubber.beta"])
+    assert [one.settings["impact.velocity"] for one in found] == [1.5, 1.6]
+    assert "1.5, 1.6 m/s, of their column" in found[0].taken
 
 
 @pytest.mark.parametrize(("head", "said"), [
@@ -217,3 +240,131 @@ def test_the_advised_law_is_exact_for_a_power_law():
     # s^2 L(E) L(J) = 1 with L(t^-n) = Gamma(1 - n) s^(n - 1), L(t^n) = Gamma(1 + n) s^(-1 - n)
     compliance = time**n / (math.gamma(1 - n) * math.gamma(1 + n))
     assert math.sin(math.pi * n) / (math.pi * n * compliance) == pytest.approx(time**-n, rel=1e-12)
+
+
+# ------------------------------------------------------------------------------ side by side
+
+
+HERTZ = np.geomspace(0.1, 100, 8)
+
+
+def columns_of(head, *columns):
+    rows = [",".join(f"{x:.6g}" for x in row) for row in zip(*columns, strict=True)]
+    return "\n".join([head, *rows]) + "\n"
+
+
+@pytest.mark.parametrize("head", [
+    "f [Hz],E' [Pa],E'' [Pa],E' [Pa],E'' [Pa]",
+    "f [Hz],E'_1 [Pa],E''_1 [Pa],E'_2 [Pa],E''_2 [Pa]",
+    "f [Hz],Storage modulus (1) [Pa],Loss modulus (1) [Pa],Storage modulus (2) [Pa],"
+    "Loss modulus (2) [Pa]",
+    "f [Hz],Run 1: E' [Pa],Run 1: E'' [Pa],Run 2: E' [Pa],Run 2: E'' [Pa]",
+    "f [Hz],E' rep 3 [Pa],E'' rep 3 [Pa],E' rep 5 [Pa],E'' rep 5 [Pa]",
+    "f [Hz],Rep 1,,Rep 2,\n,E' [Pa],E'' [Pa],E' [Pa],E'' [Pa]",
+])  # fmt: skip
+def test_replicates_side_by_side(tmp_path, head):
+    """Each is a run of its own; the frequencies of one column are those of all."""
+    storage, loss = 1e6 * (1 + HERTZ), 5e5 * (1 + HERTZ**0.5)
+    text = columns_of(head, HERTZ, storage, loss, 1.02 * storage, 0.97 * loss)
+    data = read_data(write(tmp_path, text))
+    assert "2 runs are one curve" in data.attrs["taken"]
+    (one,) = curves(data)
+    first, second = (one[one["set"] == run] for run in (0, 1))
+    assert np.allclose(first.storage_modulus, storage, rtol=1e-5)
+    assert np.allclose(second.storage_modulus, 1.02 * storage, rtol=1e-5)
+    assert np.allclose(second.loss_modulus, 0.97 * loss, rtol=1e-5)
+    # as they would be one below the other
+    assert np.allclose(first.frequency, second.frequency)
+
+
+def test_replicates_with_their_own_frequencies_and_failed_points(tmp_path):
+    storage, loss = 1e6 * (1 + HERTZ), 5e5 * (1 + HERTZ**0.5)
+    head = "f_1 [Hz],E'_1 [Pa],E''_1 [Pa],f_2 [Hz],E'_2 [Pa],E''_2 [Pa],Average E' [Pa]"
+    text = columns_of(head, HERTZ, storage, loss, 1.1 * HERTZ, 1.02 * storage, loss, storage)
+    lines = text.splitlines()
+    lines[3] = lines[3].rsplit(",", 3)[0] + ",---,---,5"
+    (one,) = curves(read_data(write(tmp_path, "\n".join(lines))))
+    assert len(one) == 15 and one.attrs["runs"] == 2
+    second = one[one["set"] == 1]
+    assert np.allclose(second.frequency, np.delete(2 * np.pi * 1.1 * HERTZ, 2), rtol=1e-5)
+
+
+@pytest.mark.parametrize("head", [
+    "drop height [cm],rebound height trial 1 [cm],rebound height trial 2 [cm]",
+    "drop height [cm],Trial 1 rebound height [cm],Trial 2 rebound height [cm]",
+    "drop height [cm],rebound height (run 1) [cm],rebound height (run 2) [cm]",
+])  # fmt: skip
+def test_trials_of_impacts_side_by_side(tmp_path, head):
+    data = read_data(write(tmp_path, head + "\n50,30,31\n100,58,60\n"))
+    assert data.drop_height.tolist() == pytest.approx([0.5, 1.0, 0.5, 1.0])
+    assert data.rebound_height.tolist() == pytest.approx([0.3, 0.58, 0.31, 0.6])
+
+
+@pytest.mark.parametrize("head", [
+    "drop height [cm],h_2 [cm],h_3 [cm]", "drop height [cm],rebound height 1 [cm],bounce 2 [cm]",
+    "drop height [cm],rebound height [cm],rebound height [cm]",
+])  # fmt: skip
+def test_bounces_one_after_the_other_are_no_trials(tmp_path, head):
+    with pytest.raises(vcor.InputError):
+        read_data(write(tmp_path, head + "\n50,30,31\n100,58,60\n"))
+
+
+def test_the_average_of_trials_is_none(tmp_path):
+    head = "v [m/s],cor (trial 1),cor (trial 2),Average cor\n1,0.8,0.82,0.81\n2,0.7,0.72,0.71\n"
+    data = read_data(write(tmp_path, head))
+    assert data.cor.tolist() == [0.8, 0.7, 0.82, 0.72] and "Average cor" in data.attrs["taken"]
+
+
+# ----------------------------------------------------------------------------- steps of strain
+
+
+@pytest.mark.parametrize(("head", "strain"), [
+    ("time [s],stress [MPa],strain [%]", 2.0), ("Zeit [s],Spannung [MPa],Dehnung", 0.02),
+    ("t [s],compressive stress [MPa],compressive strain [%]", 2.02),
+])  # fmt: skip
+def test_a_step_of_strain(tmp_path, head, strain):
+    """The modulus is the stress over the strain, which a machine holds to some percent."""
+    stress = 0.5 / (1 + HERTZ)
+    text = columns_of(head, HERTZ, stress, np.where(HERTZ < 1, strain, 0.98 * strain))
+    data = read_data(write(tmp_path, text))
+    share = 0.01 if strain == 2.02 else 0.0
+    found = data.relaxation_modulus.to_numpy() / (1e6 * stress / 0.02)
+    expected = np.where(HERTZ < 1, 1, 1 / 0.98) / (1 + share)
+    assert data.attrs["kind"] == "relaxation" and found == pytest.approx(expected, rel=1e-5)
+    assert " over " in data.attrs["taken"] and not {"stress", "strain"} & {*data}
+
+
+@pytest.mark.parametrize("more", ["f [Hz]", "Phase angle [deg]", "tan delta"])
+def test_amplitudes_of_an_oscillation_are_no_step(tmp_path, more):
+    head, one = f"time [s],stress [Pa],strain [%],{more}", 0 * HERTZ + 1
+    with pytest.raises(vcor.InputError):
+        read_data(write(tmp_path, columns_of(head, HERTZ, 1 / HERTZ, one, HERTZ)))
+
+
+def test_shear_stress_makes_shear_moduli(tmp_path):
+    text = columns_of("t [s],shear stress [Pa],shear strain [%]", HERTZ, 1 / HERTZ, 0 * HERTZ + 1)
+    assert read_data(write(tmp_path, text)).attrs["shear"] is True
+
+
+@pytest.mark.parametrize(("head", "stress", "strain", "says"), [
+    ("t [s],stress [Pa],strain [%]", 0 * HERTZ + 5, 1 + HERTZ, "of a creep test, whose compliance"),
+    ("t [s],stress [Pa],strain [%]", 1 + HERTZ, 1 + HERTZ, "after a step of strain; where="),
+    ("t [s],stress [Pa],x", 1 + HERTZ, HERTZ, "a column strain [%] beside it"),
+    ("t [s],x,strain [%]", HERTZ, 1 + HERTZ, "strain over the stress is the compliance"),
+    ("x,stress [Pa],strain [%]", 1 + HERTZ, 1 + HERTZ, "no column of the time"),
+])  # fmt: skip
+def test_stress_and_strain_that_make_no_modulus(tmp_path, head, stress, strain, says):
+    with pytest.raises(vcor.InputError) as caught:
+        read_data(write(tmp_path, columns_of(head, HERTZ, stress, strain)))
+    assert says in str(caught.value)
+
+
+def test_samples_by_a_column_of_words(tmp_path):
+    """Curves of two materials are not one: the message says how one is taken."""
+    rows = [f"{name},{f:.6g},{size * (1 + f):.6g},{size:.6g}" for name, size in (("A", 1), ("B", 2))
+            for f in HERTZ]  # fmt: skip
+    path = write(tmp_path, "\n".join(["polymer,f [Hz],E' [MPa],E'' [MPa]", *rows]))
+    with pytest.raises(vcor.InputError, match=r"where={'polymer': 'A'} takes one of several"):
+        curves(read_data(path))
+    (one,) = curves(read_data(path, where={"polymer": "B"}))
+    assert np.allclose(one.loss_modulus, 2e6)

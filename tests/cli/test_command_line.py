@@ -1,6 +1,7 @@
 """Words of the command line: what is refused, and what each option does."""
 
 import os
+import re
 import subprocess
 
 import pytest
@@ -328,12 +329,39 @@ def test_values_without_such_a_blank(sls, words):
     assert sls("run", *words, "--quiet").code == SUCCESS
 
 
-@pytest.mark.parametrize("name, says", [("a.h5", "; vcor plot draws files"), ("a.xlsx", "identify and table")])
+@pytest.mark.parametrize("name, says", [("a.h5", "; vcor plot draws files"), ("a.xlsx", "identify and table"),
+                                        ("a.csv", "; vcor fit, master"), ("a.txt", "; vcor fit, master")])  # fmt: skip
 @pytest.mark.parametrize("command", ["run", "check", "material", "verify"])
 def test_results_and_data_are_no_case(sls, name, says, command):
     sls.write("x", name)
     sls.refuses(command, name, code=INPUT, says=[f"{name}:1: found", says])
     sls.refuses(command, f"no{name}", code=FILE, says=[f"no{name}: there is no such file"])
+
+
+def test_values_of_a_single_impact_are_no_columns(sls):
+    sls.refuses("run", "case.nml", "--print", "impact.velocity", code=USAGE,
+                says=["found 'impact.velocity' in --print", "those that vcor check prints"])  # fmt: skip
+
+
+def test_few_steps_are_enough(sls):
+    """The screen says so of methods that choose their steps."""
+    assert "  method ive in 4 steps, as many as the accuracy needs\n" in sls.succeeds("run", "case.nml")
+    direct = sls.succeeds("run", "case.nml", "--set", "solver.method=direct")
+    assert re.search(r"\n  method direct in \d+ steps\n", direct)
+
+
+def test_a_sheet_that_flies_with_the_ball_may_lack_its_floor(vcor):
+    vcor.write("""&impact velocity = 2.4 /
+&sphere diameter = 0.006, material = 'steel' /
+&plate thickness = 0.003, material = 'sheet' /
+&contact mechanics = 'exact' /
+&material name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3, density = 7800 /
+&material name = 'sheet', model = 'mittag_leffler', density = 1150, poisson_ratio = 0.5, equilibrium_modulus = 4e6,
+   relaxing_modulus = 1.1e9, exponent = 0.45, time = 1e-9 /
+&solver end_time = 0.004 /
+""")
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code != SUCCESS and "free on both sides, one on a floor needs plate.base" in done.err
 
 
 @pytest.mark.parametrize("topic", ["tangential", "rolling", "oblique", "hollow"])

@@ -47,7 +47,7 @@ from .materials.data import (
 )
 from .materials.select import Where
 from .materials.tables import Choice
-from .materials.units import PREFIXES, ZERO_C
+from .materials.units import PREFIXES, TURN, ZERO_C
 from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
@@ -77,6 +77,8 @@ _HATCHES = {"outside": ("/////", "outside of the model's validity"),
 _MOST_LINES = 20
 #: Letters of a label for an inch, and the width of a panel that its numbers take [in]
 _LETTERS, _BESIDE = 15.0, 0.75
+#: Markers of measured points
+_MARKS = "osD^v<>phX"
 #: Colours of a map, light enough for lines and hatching over them
 _SHADES = LinearSegmentedColormap.from_list("", mpl.colormaps["Blues"](np.linspace(0.0, 0.7, 64)))
 #: Colour of the points of a map without a result: grey, which is not a level
@@ -191,7 +193,8 @@ def figure(
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
     if quantities and kind not in ("sweep", "map"):
         raise UsageError(
-            f"found {option('quantities')}, which a figure of kind {kind} does not show"
+            f"found {option('quantities')}, which a figure of kind {kind} does not show; a sweep "
+            "has them against its parameter"
         )
     _check_axes(log, ranges or {}, levels)
     if width is not None and not _WIDTHS[0] <= numbers(width, "width", 0, "cm") <= _WIDTHS[1]:
@@ -206,6 +209,9 @@ def figure(
     for result, text in zip(results, legends or legends_of(results), strict=True):
         result.text = printable(str(text))
     names = [plain_name(name) for name in listed(quantities or "cor")]
+    if "validity" in names:
+        raise UsageError(f"{option('quantities')}: validity is hatched behind every quantity, such "
+                         f"as {option('quantities', 'cor')}; it is none with an axis")  # fmt: skip
     own = {axis: text for axis, text in (("x", xlabel), ("y", ylabel)) if text is not None}
     wishes = _Wishes(
         results, bool(legends), own, data, names, log, ranges or {}, levels, hatch, width
@@ -217,7 +223,7 @@ def figure(
         _adjust(made, wishes)
     shown = {text for axis in made.axes for text in axis.get_legend_handles_labels()[1]}
     for one in data:
-        if _stem(one) not in shown:
+        if not any(text == _stem(one) or text.startswith(f"{_stem(one)}: ") for text in shown):
             raise InputError(
                 f"{one.attrs['path']}: found the columns {', '.join(one)}, expected one for each "
                 f"axis{': ' * bool(results[0].axes)}{', '.join(results[0].axes)}"
@@ -394,26 +400,33 @@ def _moduli(wishes: _Wishes) -> Figure:
     made, axes = _new(wishes, 2 if single else 4, 2)
     if single:
         axes = [axes[0], axes[1], axes[1], axes[1].twinx()]
+    # in the unit of the data, if there are any
+    hertz = any(one.attrs.get("hertz") for one in wishes.data)
+    turn = TURN if hertz else 1.0
     for i, (text, both, ends) in enumerate(curves):
         if several and np.isfinite(ends).all():
             time, shown = _scale("s", ends[0])
-            text += f": t₀ = {time * ends[0]:.4g} {shown}, ωₘᵢₙ = {ends[1]:.4g} rad/s"
+            text += f": t₀ = {time * ends[0]:.4g} {shown}, {_least(ends[1], hertz)}"
         for k, (axis, name) in enumerate(zip(axes, columns, strict=True)):
             number, label = (max(0, k - 1), name.replace("_", " ")) if single else (i, text)
             one, over = (both[0], "time") if k == 0 else (both[1], "frequency")
             fy = 1.0 if name == "loss_tangent" else factor
             values = fy * one[name].where(one[name] > 0)
-            _curve(axis, number, one[over], values, None if single and k == 0 else label)
+            fx = 1 / turn if k else 1.0
+            _curve(axis, number, fx * one[over], values, None if single and k == 0 else label)
             mark = ends[k > 0]
             if np.isfinite(mark) and not (single and k > 1) and (several or i == 0):
                 color = axis.lines[-1].get_color() if several else "0.5"
-                time, shown = _scale("s", mark) if k == 0 else (1.0, "rad/s")
-                said = f"{'ωₘᵢₙ' if k else 't₀'} = {time * mark:.4g} {shown}"
-                axis.axvline(mark, color=color, lw=0.6, ls=":", label=None if several else said)
+                time, shown = _scale("s", mark)
+                said = _least(mark, hertz) if k else f"t₀ = {time * mark:.4g} {shown}"
+                axis.axvline(
+                    fx * mark, color=color, lw=0.6, ls=":", label=None if several else said
+                )
             if i == 0:
-                _points(axis, wishes.data, over, name, 1.0, fy)
+                _points(axis, wishes.data, over, name, fx, fy, shift=k if single else 0)
     for k, (axis, name) in enumerate(zip(axes, columns, strict=True)):
-        axis.set_xlabel("angular frequency [rad/s]" if k else "time [s]")
+        across = "frequency [Hz]" if hertz else "angular frequency [rad/s]"
+        axis.set_xlabel(across if k else "time [s]")
         axis.set_xscale("log")
         words = name.replace("_", " ")
         if name == "loss_tangent":
@@ -483,6 +496,9 @@ def _bands(axis: Axes, number: int, x: Any, line: xr.Dataset, name: str, factor:
         if (bottom := f"{name}_p{low}") in line and (top := f"{name}_p{high}") in line:
             axis.fill_between(x, factor * line[bottom], factor * line[top], color=color, lw=0,
                               alpha=alpha, label=f"{text} of the samples")  # fmt: skip
+    if "beyond" in line and (out := line["beyond"].values.astype(bool)).any():
+        axis.plot(x[out], factor * line[name][out], color=color, ls="", marker="o", mfc="white",
+                  label="beyond the data of the materials")  # fmt: skip
     if f"{name}_exact" in line and np.isfinite(line[f"{name}_exact"]).any():
         axis.plot(x, factor * line[f"{name}_exact"], color=color, ls="--", marker="",
                   label="exact mechanics")  # fmt: skip
@@ -686,8 +702,20 @@ def _curve(axis: Axes, number: int, x: Any, y: Any, text: str | None, **options:
     axis.plot(x, y, **settings, markevery=[int(i) for i in alone])
 
 
-def _points(axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy: float) -> None:
-    """Measured points with their errors."""
+def _least(frequency: float, hertz: bool) -> str:
+    """The lowest frequency of interest [rad/s] in words."""
+    if hertz:
+        return f"fₘᵢₙ = {frequency / TURN:.4g} Hz"
+    return f"ωₘᵢₙ = {frequency:.4g} rad/s"
+
+
+def _points(
+    axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy: float, *, shift: int = 0
+) -> None:
+    """Measured points with their errors; a shift is for the quantities of a panel that has several.
+
+    Each of these has a marker of its own, named in the legend.
+    """
     for number, one in enumerate(data):
         (at, at_sigma), (values, sigma) = _find(one, x), _find(one, y)
         if at is None or values is None:
@@ -695,8 +723,9 @@ def _points(axis: Axes, data: list[pd.DataFrame], x: str, y: str, fx: float, fy:
         axis.errorbar(
             fx * at, fy * values,
             None if sigma is None else fy * sigma, None if at_sigma is None else fx * at_sigma,
-            fmt="osD^v"[number % 5], color="0.3", mfc="white", capsize=1.5, elinewidth=0.7, ls="",
-            label=_stem(one), zorder=3,
+            fmt=_MARKS[(number + max(0, shift - 1) * len(data)) % len(_MARKS)], color="0.3",
+            mfc="white", capsize=1.5, elinewidth=0.7, ls="", zorder=3,
+            label=f"{_stem(one)}: {y.replace('_', ' ')}" if shift else _stem(one),
         )  # fmt: skip
 
 

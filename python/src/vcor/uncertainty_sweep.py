@@ -55,10 +55,15 @@ class Bands:
         )
 
     def figure(self, quantity: str = "cor") -> Any:
-        """Figure (matplotlib) of a quantity with its bands, as `vcor plot` makes it."""
+        """Figure (matplotlib) of a quantity with its bands, as `vcor plot` makes it.
+
+        Points at which the impact lies beyond the data of its materials are marked.
+        """
         from .plot import figure
 
-        return figure(self.table, quantities=[quantity])
+        (axis,) = self.table.coords
+        beyond = [bool(one and one.beyond) for one in self.points]
+        return figure(self.table.assign(beyond=(axis, beyond)), quantities=[quantity])
 
 
 def bands(

@@ -195,7 +195,8 @@ contains
                call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
                   //'solver.accuracy, '//as_text(self%settings%accuracy)//', by ' &
                   //as_text(cor_error - self%settings%accuracy)//' with '//steps_text(level) &
-                  //' steps, and more steps would take too long: give a larger one')
+                  //' steps, and more steps would take too long; these reach ' &
+                  //as_text(2.0_wp*cor_error))
                return
             end if
          end if

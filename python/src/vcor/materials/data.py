@@ -21,7 +21,7 @@ from .labels import unified
 from .names import read_head
 from .reader import SAME_TEMPERATURE, Reader, refuse_all_but_moduli
 from .select import Where
-from .tables import Choice
+from .tables import REPLICATES, Choice
 from .units import ZERO_C
 
 if TYPE_CHECKING:
@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 Columns = Mapping[str, str | int] | Sequence[str] | None
 Units = Mapping[str, str] | Sequence[str] | str | None
 
-#: Logarithm of a factor by which replicates differ at most: specimens of a material scatter by some
-#: percent, while moduli at temperatures between which it relaxes differ by more than this
-REPLICATES = 0.2
 MODULI = {"relaxation_modulus", "storage_modulus", "loss_modulus"}
 #: Relative difference of the frequencies of a sweep of temperatures at one frequency
 SAME_FREQUENCY = 0.01
@@ -75,7 +72,9 @@ def read_data(
         A row for each point, with its line in the file as index. `attrs` has `kind` (dynamic,
         relaxation, shift, record or impacts), `taken`, a line that says what was taken for what,
         `shear`, whether moduli are shear moduli (None: not stated), `units`, `names`, `remarks`,
-        `path`, and `digits`, the unit of the last digit of a column and its significant digits.
+        `path`; `word`, how to take the rows with one word of a column that has some; `hertz`,
+        whether frequencies are in Hz or a multiple; and `digits`, the unit of the last digit of a
+        column and its significant digits.
     """
     import pandas as pd
 
@@ -96,6 +95,8 @@ def read_data(
         "units": {key: reader.units.get(key, "") for key in frame},
         "remarks": grid.remarks,
         "digits": reader.digits,
+        "hertz": reader.hertz,
+        "word": reader.word,
     }
     frame.attrs["taken"] = reader.taken(frame)
     if whole and kind in ("dynamic", "relaxation"):
@@ -137,7 +138,8 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
                 f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
                 f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
                 "or a column of temperatures that separates the curves"
-                f"; replicates differ by less than {100 * math.expm1(REPLICATES):.0f} %"
+                + f"; {one.attrs['word']} takes one of several" * bool(one.attrs.get("word"))
+                + f"; replicates differ by less than {100 * math.expm1(REPLICATES):.0f} %"
             )
         temperature = one["temperature"].mean() if "temperature" in one else math.nan
         one.attrs["temperature"] = float(temperature)

@@ -102,10 +102,11 @@ def identify(
         `drop_height`, `temperature`, `radius`, `mass` or any address, and measured columns of the
         summary, such as `cor`, `cor_sphere`, `resilience`, `rebound_height`, `contact_time`,
         `max_force`; `bounce_time` are the times in flight of one sequence of bounces. `time` and
-        `force` are a record of one impact; `time` and `relaxation_modulus`, or `frequency`,
-        `storage_modulus` and `loss_modulus`, are moduli of the material that is free. NAME_sigma
-        is the standard error of a column. Without errors all data have the same relative one. The
-        rounding of the data and the errors of the solution are added.
+        `force` are a record of an impact, or of the bounces of a ball, which are split; `time` and
+        `relaxation_modulus`, or `frequency`, `storage_modulus` and `loss_modulus`, are moduli of
+        the material that is free. NAME_sigma is the standard error of a column. Without errors all
+        data have the same relative one. The rounding of the data and the errors of the solution are
+        added.
     free
         Addresses of the parameters, all > 0; of a material with `model` they may be empty.
     fix
@@ -152,7 +153,7 @@ def identify(
         raise UsageError("expected at least one file or table of data")
     free = [address for address in free if address not in fix]
     if model:
-        read = [observations(case, source, free, choice) for source in sources]
+        read = [block for one in sources for block in observations(case, one, free, choice)]
         case, free = _with_model(case, free, model, fix, read)
     if not free:
         also = f" that {option('fix')} does not give, found {', '.join(fix)}" if fix else ""
@@ -160,7 +161,7 @@ def identify(
     whole(seed, option("seed"), 0, MOST_SEED)
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
-    blocks = [observations(case, source, free, choice) for source in sources]
+    blocks = [block for one in sources for block in observations(case, one, free, choice)]
     choice.refuse_unseen("the files have")
     # the accuracy that the fit needs is not one of the case
     given = case.copy()

@@ -14,7 +14,7 @@ from .._library import printable
 from ..case import number
 from .advice import percent
 from .identified import Identified
-from .observations import COEFFICIENTS, materials_of
+from .observations import COEFFICIENTS, IMPACT, materials_of
 from .units import ZERO_C
 
 #: Data that are shown at most
@@ -106,7 +106,11 @@ def report(found: Identified) -> str:
 
 def _sources(found: Identified) -> dict[str, str]:
     """Files of data by their names without folders and endings."""
-    return {row["source"]: printable(Path(row["source"]).stem) for row in found.data}
+    names = {}
+    for row in found.data:
+        path, mark, rest = row["source"].partition(IMPACT)
+        names[row["source"]] = printable(Path(path).stem + mark + rest)
+    return names
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from .samples import one_thread
 from .select import Where
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .tables import Choice
-from .units import ZERO_C
+from .units import TURN, ZERO_C
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -176,9 +176,10 @@ class Master:
             dynamic = self.curves[0].dynamic
             at, *moduli = self.curve()
             names = ("storage modulus", "loss modulus") if dynamic else ("relaxation modulus",)
+            hertz = dynamic and any(one.hertz for one in self.curves)
             for name, row, mark in zip(names, moduli, "os", strict=False):
-                left.loglog(at, row / 1e6, mark, ms=2, label=name)
-            what = "frequency [rad/s]" if dynamic else "time [s]"
+                left.loglog(at / (TURN if hertz else 1.0), row / 1e6, mark, ms=2, label=name)
+            what = f"frequency [{'Hz' if hertz else 'rad/s'}]" if dynamic else "time [s]"
             what += f" at {self.reference_temperature - ZERO_C:.1f} °C"
             left.set(xlabel=f"reduced {what}", ylabel="modulus [MPa]")
             left.legend()
@@ -342,7 +343,7 @@ def curve_of(data: pd.DataFrame) -> Curve:
     given = str(data.attrs["names"].get("temperature", data.attrs.get("given", "")))
     celsius = re.search(r"(?i)K\W*$|kelvin", given) is None
     moduli = data[names].to_numpy().T.copy()
-    return Curve(data.attrs["temperature"], dynamic, at, moduli, celsius)
+    return Curve(data.attrs["temperature"], dynamic, at, moduli, celsius, data.attrs["hertz"])
 
 
 def _parser() -> _command.Parser:

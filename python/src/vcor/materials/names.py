@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import itertools
 import re
@@ -65,6 +66,24 @@ _SHEAR = re.compile(
 _TENSILE = re.compile(
     r"young|tensile|zug|elastizit|traction|引張|拉伸|\bE(?![a-z])|\|E|dehn", re.UNICODE
 )
+#: The number of a measurement behind the name of a column, and in front of it: E'_2, cor (trial 2),
+#: Run 2 E'; a word has to tell that heights and velocities are no later ones of a sequence
+_NUMBERED = (
+    r"(?:run|rep|repl|replicate|repeat|repetition|trial|test|sample|specimen|versuch|messung|probe"
+    r"|lauf|essai|mesure|ensayo|prueba|muestra|try)"
+)
+_RUN_BEHIND = re.compile(
+    rf"(?i)(?P<name>.*?[^\s_\d])[\s_,;]*[\s_,;.(#\[]#?\s*(?P<word>{_NUMBERED})?[\s_.#]*"
+    r"(?P<run>[1-9]\d?)[)\]]?(?P<unit>\s*[\[(/].*)?"
+)
+_RUN_BEFORE = re.compile(
+    rf"(?i)(?P<word>{_NUMBERED})[\s_.#]*(?P<run>[1-9]\d?)[\s_,;:]+(?P<name>\D.*?)(?P<unit>)"
+)
+#: Quantities that are no sequence of impacts, so that a number alone tells a measurement
+CURVES = {
+    "time", "frequency", "angular_frequency", "storage_modulus", "loss_modulus", "complex_modulus",
+    "relaxation_modulus", "loss_tangent", "phase_angle",
+}  # fmt: skip
 _AT = re.compile(
     rf"[\s,;@_(\[]+(?:(?:at|bei|à|a|@)\s*)?(?:T\s*[=:]?\s*)?{TEMPERATURE}\s*[)\]]?", re.UNICODE
 )
@@ -100,11 +119,18 @@ class Head:
     doubt: str = ""
     #: Whether the name is a symbol, which others may use for something else
     symbol: bool = False
+    #: Number of the measurement among several side by side, 0: not stated
+    run: int = 0
 
     @property
     def key(self) -> str:
         """Name of the column in a table."""
         return self.name + "_sigma" * self.sigma
+
+
+def is_average(text: str) -> bool:
+    """Whether a name is that of a mean of other columns."""
+    return _AVERAGE.search(plain(re.sub(r"[\[(][^\[\]()]*[\])]\s*$", "", text))) is not None
 
 
 def plain(text: str) -> str:
@@ -197,6 +223,9 @@ def read_head(text: str) -> Head:
         temperature, doubt = label.kelvin, label.flaw
         text = (plainer[: found.start()] + plainer[found.end() :]).strip()
     text, base, flaw = _logarithm(text)
+    if (numbered := _of_run(text, by_word=True)) is not None:
+        return dataclasses.replace(numbered, text=given, base=base, flaw=flaw,
+                                   temperature=temperature, doubt=doubt)  # fmt: skip
     bare, unit, sigma, known = "", "", False, None
     for name, of in _parts(text):
         stem = _of_error(name)
@@ -209,6 +238,9 @@ def read_head(text: str) -> Head:
             bare, unit, sigma = stem or name, of, bool(stem)
             break
     else:
+        if (numbered := _of_run(text)) is not None:
+            return dataclasses.replace(numbered, text=given, base=base, flaw=flaw,
+                                       temperature=temperature, doubt=doubt)  # fmt: skip
         # not known: its unit is what stands in brackets
         unit = next((of for name, of in _parts(text)[1:] if quantities_of(of)), "")
         return Head(given, unit=unit, base=base, temperature=temperature, flaw=flaw,
@@ -236,6 +268,19 @@ def read_head(text: str) -> Head:
     return Head(given, name, known.unit, "" if unit in ("[]",) else unit, base, temperature, shear,
                 sigma, angular, implied and bool(unit), flaw, doubt,
                 symbol)  # fmt: skip
+
+
+def _of_run(text: str, *, by_word: bool = False) -> Head | None:
+    """The head of a column whose name has the number of a measurement; None: it has none.
+
+    With `by_word` a word such as run has to stand before the number.
+    """
+    found = _RUN_BEHIND.fullmatch(text) or _RUN_BEFORE.fullmatch(text)
+    if not found or (by_word and not found["word"]):
+        return None
+    head = read_head(f"{found['name']}{found['unit'] or ''}")
+    sure = head.name in QUANTITIES and not head.run and (found["word"] or head.name in CURVES)
+    return dataclasses.replace(head, run=int(found["run"])) if sure else None
 
 
 def _of_error(name: str) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import math
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -44,10 +46,18 @@ SETTINGS = {
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Factor between neighbouring coefficients of restitution that no sequence of bounces has
 UNLIKE = 2.0
-#: Part of the largest force above which a pulse is one of an impact, and lengths of the longest
-#: pulse between impacts: a flight lasts far longer than a contact, and contacts with a beam or a
-#: plate that swings follow each other within some lengths
-PULSE, APART = 0.3, 20.0
+#: Part of the largest force above which a pulse is one of an impact, in noise and without, and
+#: lengths of the longest pulse between impacts: a flight lasts far longer than a contact, and
+#: contacts with a beam or a plate that swings follow each other within some lengths
+PULSE, LEAST_PULSE, APART = 0.3, 0.1, 20.0
+#: Part of the largest force of a pulse at which its contact begins and ends, and lengths of a
+#: contact that are kept on each side of one of several
+TOUCH, BESIDE_PULSE = 0.01, 2.0
+#: What the name of a record has behind that of its file, if it is one of several
+IMPACT = " (impact "
+#: Most impacts of a table: a fit solves each some 500 times, which takes 0.03 s an impact on a thin
+#: plate, so a minute
+MOST_IMPACTS = 2000
 #: Relative error of the moduli of a model, with room: functions in double precision
 ERROR_OF_MODULI = 1e-11
 #: Accuracy with waves = 'body', where a finer one takes seconds
@@ -106,6 +116,10 @@ class Impacts:
         self.scale = np.abs(self.value)
         self._columns = np.repeat(np.arange(len(parts)), [len(rows) for _, rows, *_ in parts])
         n = max((len(column) for column in self.settings.values()), default=max(self._rows) + 1)
+        if n > MOST_IMPACTS:
+            raise InputError(f"{source}: found {n} impacts, expected at most {MOST_IMPACTS}, as a "
+                             "fit solves each some hundred times: take a part of the rows "
+                             f"({option('where')}), or means of repeated impacts")  # fmt: skip
         #: Velocity of each impact [m/s]
         self.velocity = self.settings.pop("impact.velocity", np.full(n, velocity_of(case)))
         if case["impact.drop_height"] is None:
@@ -510,35 +524,40 @@ def _as_velocities(
 
 def observations(
     case: Case, source: Source, free: Sequence[str], choice: Choice | None = None
-) -> Block:
-    """Data of a file or of columns, by what they are."""
+) -> list[Block]:
+    """Data of a file or of columns, by what they are; a record of several impacts is one each."""
     materials, taken, written = materials_of(free), "", NO_DIGITS
     if isinstance(source, Mapping):
         name = "data"
         columns, taken = _measured(arrays(source))
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
+        lines = np.arange(len(next(iter(columns.values()), ()))) + 1
     else:
         name = os.fspath(source)
-        columns, taken, written = read_columns(source, case, materials, choice)
+        columns, taken, written, lines = read_columns(source, case, materials, choice)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
             row = int(np.argmax(wrong))
             raise InputError(f"{name}: row {row + 1}: found a {key} of {column[row]:.6g}, expected "
                              f"a finite one{' > 0' * key.endswith('_sigma')}")  # fmt: skip
-    block: Block
+    blocks: list[Block] = []
     if "time" in columns and ("force" in columns or "acceleration" in columns):
-        block = Record(name, columns, case, written)
+        parts, said = _single_impacts(name, columns, lines, case)
+        for i, part in enumerate(parts, 1):
+            own = name if len(parts) == 1 else f"{name}{IMPACT}{i})"
+            blocks.append(Record(own, part, case, written))
+        taken += said
     elif any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
-        block = Moduli(name, columns, materials[0], case.copy(), written)
+        blocks.append(Moduli(name, columns, materials[0], case.copy(), written))
     else:
-        block = Impacts(name, columns, case, written)
-    block.taken = taken
-    return block
+        blocks.append(Impacts(name, columns, case, written))
+    blocks[0].taken = taken
+    return blocks
 
 
 def _measured(columns: dict[str, Floats]) -> tuple[dict[str, Floats], str]:
@@ -560,51 +579,121 @@ def read_columns(
     case: Case,
     materials: Sequence[str] = (),
     choice: Choice | None = None,
-) -> tuple[dict[str, Floats], str, Written]:
-    """Columns of a file, what was taken, and digits; moduli by the ratio of the first material."""
+) -> tuple[dict[str, Floats], str, Written, NDArray[np.intp]]:
+    """Columns of a file, what was taken, digits, and the line of each row.
+
+    Moduli are tensile by Poisson's ratio of the first material.
+    """
 
     def unit_of(address: str) -> str:
         """SI unit of the value at an address."""
         return case._describe(address).unit
 
     data = read_data(path, choice, unit_of=unit_of)
-    if data.attrs["kind"] == "record":
-        _refuse_several(data)
     if data.attrs["kind"] in ("dynamic", "relaxation"):
         ratios = [number(case, f"{name}.poisson_ratio") for name in materials]
         data = tensile(data, ratios[0] if ratios else None)
         parts = curves(data)
         for part in parts:
             part["temperature"] = part.attrs["temperature"]
-        return _arrays(pd.concat(parts)), data.attrs["taken"], data.attrs["digits"]
-    return _arrays(data), data.attrs["taken"], data.attrs["digits"]
+        data = pd.concat(parts)
+        data.attrs = parts[0].attrs
+    lines = data.index.to_numpy(dtype=np.intp)
+    return _arrays(data), data.attrs["taken"], data.attrs["digits"], lines
 
 
-def _refuse_several(data: pd.DataFrame) -> None:
-    """Refuse a record of several impacts: each has a velocity of its own."""
-    name = "force" if "force" in data else "acceleration"
-    if name not in data or "time" not in data:
-        return
-    time, force = data["time"].to_numpy(), data[name].to_numpy()
-    good = np.flatnonzero(np.isfinite(time) & np.isfinite(force))
-    if len(good) < 5:
-        return
-    force = force[good] - np.median(force[good])
-    force *= np.sign(force[np.argmax(np.abs(force))])
-    high = np.flatnonzero(force > PULSE * force.max())
-    pulses = np.split(high, np.flatnonzero(np.diff(high) > 1) + 1)
-    at = [(time[good[pulse[0]]], time[good[pulse[-1]]]) for pulse in pulses]
-    longest = max(end - begin for begin, end in at)
+def _single_impacts(
+    source: str, columns: dict[str, Floats], lines: NDArray[np.intp], case: Case
+) -> tuple[list[dict[str, Floats]], str]:
+    """Records of one impact each, and what is said of them if they are several.
+
+    A column of velocities that differ is that of each impact. Else a ball bounces: an impact after
+    the first has the velocity g T/2 that the flight T before it ends with.
+    """
+    name = "force" if "force" in columns else "acceleration"
+    good = np.flatnonzero(np.isfinite(columns["time"]) & np.isfinite(columns[name]))
+    pulses = _pulses(columns["time"][good], columns[name][good])
+    if len(pulses) < 2:
+        return [columns], ""
+    # half way between two impacts one record ends and the next one begins
+    middles = [(one.last + other.first) // 2 for one, other in itertools.pairwise(pulses)]
+    cuts = [0, *good[middles].tolist(), len(columns["time"])]
+    parts = [
+        {key: column[begin:end] for key, column in columns.items()}
+        for begin, end in itertools.pairwise(cuts)
+    ]
+    stated = columns.get("velocity", np.array([velocity_of(case)]))
+    how = "of their column"
+    speeds = [float(stated[min(good[one.first], len(stated) - 1)]) for one in pulses]
+    if np.ptp(stated) == 0:
+        how = "by the times in flight"
+        flights = [other.begin - one.end for one, other in itertools.pairwise(pulses)]
+        speeds = [float(stated[0]), *(gravity_of(case) * time / 2 for time in flights)]
+        rises = [i for i, step in enumerate(np.diff(speeds), 1) if not step < 0]
+        if rises:
+            i = rises[0]
+            rows = f"{lines[0]}:{lines[cuts[1] - 1]}"
+            raise InputError(
+                f"{source}:{lines[good[pulses[i].first]]}: found impact {i + 1} of {len(pulses)} "
+                f"in one record, no bounce, which would come at {speeds[i]:.3g} m/s by its time "
+                f"in flight after {speeds[i - 1]:.3g} m/s; expected a column of the velocity of "
+                f"each, or a single impact: {option('where', {'line': rows})} takes the first"
+            )
+    for part, pulse, speed in zip(parts, pulses, speeds, strict=True):
+        # beyond some lengths of the pulse there is only the baseline
+        length = BESIDE_PULSE * (pulse.end - pulse.begin)
+        time = part["time"]
+        near = (time >= pulse.begin - length) & (time <= pulse.end + length)
+        for key, column in part.items():
+            part[key] = column[near]
+        part["velocity"] = np.full(int(near.sum()), speed)
+    told = ", ".join(f"{speed:.4g}" for speed in speeds)
+    return parts, f"; {len(parts)} impacts at {told} m/s, {how}"
+
+
+@dataclass(frozen=True)
+class _Pulse:
+    """The force of an impact in a record."""
+
+    #: First and last point of the largest forces
+    first: int
+    last: int
+    #: Times at which the contact begins and ends [s]
+    begin: float
+    end: float
+
+
+def _pulses(time: Floats, force: Floats) -> list[_Pulse]:
+    """The impacts of a record."""
+    if len(time) < 5:
+        return []
+    force = force - np.median(force)
+    force = force * np.sign(force[np.argmax(np.abs(force))])
+    if not force.max() > 0:
+        return []
+    # above ten standard deviations of the baseline, by the median of its noise
+    noise = 10 * 1.4826 * float(np.median(np.abs(force)))
+    high = np.flatnonzero(force > max(LEAST_PULSE * force.max(), min(noise, PULSE * force.max())))
+    runs = np.split(high, np.flatnonzero(np.diff(high) > 1) + 1)
+    longest = max(time[run[-1]] - time[run[0]] for run in runs)
+    apart = [
+        i for i in range(1, len(runs)) if time[runs[i][0]] - time[runs[i - 1][-1]] > APART * longest
+    ]
+    if not longest > 0 or not apart:
+        return []
     # contacts that follow one another at once belong to one impact
-    apart = [0, *(i for i in range(1, len(at)) if at[i][0] - at[i - 1][1] > APART * longest)]
-    if longest > 0 and len(apart) > 1:
-        first = pulses[apart[1]][0] + pulses[apart[1] - 1][-1]
-        begin, end = data.index[good[0]], data.index[good[first // 2]]
-        raise InputError(
-            f"{data.attrs['path']}:{data.index[good[pulses[apart[1]][0]]]}: found impact 2 of "
-            f"{len(apart)} in one record, expected a single one, as each has a velocity of its "
-            f"own: {option('where', {'line': f'{begin}:{end}'})} takes the first"
-        )
+    groups = [runs[i:j] for i, j in itertools.pairwise([0, *apart, len(runs)])]
+    # the contact is where the force is above the noise of the baseline
+    found = []
+    for group in groups:
+        first, last = int(group[0][0]), int(group[-1][-1])
+        edge = max(noise / 2, TOUCH * float(force[first : last + 1].max()))
+        low = np.flatnonzero(force <= edge)
+        before, after = low[low < first], low[low > last]
+        begin = time[before[-1]] if before.size else time[0]
+        end = time[after[0]] if after.size else time[-1]
+        found.append(_Pulse(first, last, float(begin), float(end)))
+    return found
 
 
 def _arrays(data: pd.DataFrame) -> dict[str, Floats]:

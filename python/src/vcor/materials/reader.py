@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 _LEAST, _MOST = 1e-30, 1e30
 #: Logarithm of the difference between E''/E' and tan delta by which they contradict each other
 _CONTRADICTION = 0.1
+#: Part by which the strain of a relaxation test changes at most, so that its moduli err no more
+STEADY = 0.05
 #: Difference of temperatures that begins another curve [K]
 SAME_TEMPERATURE = 1.0
 #: Sets that a report names one by one
@@ -85,10 +87,14 @@ class Reader:
         #: By column: the unit of its last digit in SI units, and its most significant digits
         self.digits: dict[str, tuple[float, int]] = {}
         self.left: list[str] = []
+        #: How a user takes the rows with one word of a column of words, empty: there is none
+        self.word = ""
         #: How many rows the user wants
         self.selected = ""
         #: Points that were left out, and why
         self.failed: list[str] = []
+        #: Whether a frequency is in Hz, kHz and the like
+        self.hertz = False
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
         #: Temperatures that are stated, but not sure
@@ -221,7 +227,10 @@ class Reader:
             return "relaxation" if times else "dynamic"
         if names & _DYNAMIC:
             return "dynamic"
-        if "relaxation_modulus" in names:
+        # amplitudes of an oscillation are no step
+        oscillates = names & {"frequency", "loss_tangent", "phase_angle"}
+        step = times and {"stress", "strain"} <= names and not oscillates
+        if "relaxation_modulus" in names or step:
             return "relaxation"
         if "shift_factor" in names:
             return "shift"
@@ -266,6 +275,8 @@ class Reader:
             found = {"frequency", "storage_modulus", "loss_modulus"} | _BESIDE[kind]
         elif kind == "relaxation":
             found = {"time", "relaxation_modulus"} | _BESIDE[kind]
+            if "relaxation_modulus" not in names:
+                found |= {"stress", "strain"}
         elif kind == "shift":
             found = {"shift_factor"} | _BESIDE[kind]
         elif kind == "record":
@@ -329,6 +340,7 @@ class Reader:
             if words:
                 how = option("where", {text: words[0]})
                 text += f" ({', '.join(words)}: {how} takes one)"
+                self.word = how
             self.left.append(text)
 
     def _frame(
@@ -357,12 +369,16 @@ class Reader:
             values[name] = self._numbers(rows, column, units.get(column.index, ""), name, kind)
             self.names.setdefault(name, column.head.text.strip())
             self.units[name] = column.head.si
+            unit = plain_unit(units.get(column.index, ""))
+            self.hertz |= name == "frequency" and unit.endswith("Hz")
             if column.head.shear is not None:
                 self._shear.append((column.head.shear, column.head.text))
         lines = [row.line for row in rows]
         frame = pd.DataFrame(values, index=pd.Index(lines, name="line"))
         if kind == "dynamic" and self.whole:
             frame = self._dynamic(frame, table)
+        elif kind == "relaxation" and {"stress", "strain"} <= {*frame}:
+            frame = self._of_step(frame)
         elif kind == "impacts":
             frame = self._impacts(frame)
         if "diameter" in frame:
@@ -643,6 +659,27 @@ class Reader:
         ]
         return frame[[*order, *rest]].copy()
 
+    def _of_step(self, frame: pd.DataFrame) -> pd.DataFrame:
+        """The relaxation modulus from the stress after a step of strain, and the strain."""
+        stress, strain = frame["stress"].to_numpy(), frame["strain"].to_numpy()
+        texts = f"'{self.names['stress']}' and '{self.names['strain']}'"
+        off = np.abs(strain / np.median(strain) - 1) if np.median(strain) else np.ones(1)
+        if not off.max() < STEADY:
+            place = f"{self.path}:{frame.index[int(np.argmax(~(off < STEADY)))]}"
+            if np.ptp(stress) < STEADY * abs(np.median(stress)):
+                raise InputError(f"{place}: found {texts} of a creep test, whose compliance J is "
+                                 "the strain over the stress" + _of_compliance(False))  # fmt: skip
+            raise InputError(
+                f"{place}: found a strain that changes by more than {100 * STEADY:.0f} %, expected "
+                f"{texts} after a step of strain; {option('where', {'line': 'FROM:TO'})} takes the "
+                "lines after it"
+            )
+        # pushed or pulled
+        frame["relaxation_modulus"] = stress / strain
+        self.units["relaxation_modulus"] = "Pa"
+        self.names["relaxation_modulus"] = f"{self.names['stress']} over {self.names['strain']}"
+        return frame.drop(columns=[key for key in frame if str(key)[:6] in ("stress", "strain")])
+
     def _impacts(self, frame: pd.DataFrame) -> pd.DataFrame:
         """Times of events as times in flight, without the last one that has not ended."""
         if "event_time" in frame:
@@ -728,6 +765,8 @@ class Reader:
             if creep:
                 return InputError(f"{place}: found the compliance '{creep}', expected moduli"
                                   + _of_compliance("frequency" in names))  # fmt: skip
+            if lone := names & {"stress", "strain"}:
+                return self._half_of_a_step(place, table, lone)
             could = [(head, may) for head in free if (may := _could_be(head, names))]
             stress = " (a stress over the strain)"
             if not could:
@@ -779,6 +818,25 @@ class Reader:
         if "frequency" in lacks and "temperature" in names:
             line += "; a temperature sweep at one frequency tells no shifts, those at several do"
         return InputError(line)
+
+    def _half_of_a_step(self, place: str, table: Table, names: set[str]) -> InputError:
+        """A stress without the strain of its step, or a strain without its stress."""
+        name = min(names)
+        text = next(head.text.strip() for head in table.heads if head.name in names)
+        if len(names) > 1 and "frequency" in _known(table):
+            return InputError(f"{place}: found stress and strain of an oscillation, expected "
+                              "storage and loss modulus")  # fmt: skip
+        if len(names) > 1:
+            return InputError(f"{place}: found stress and strain, but no column of the time, "
+                              f"expected one named as {QUANTITIES['time'].example}")  # fmt: skip
+        if name == "stress":
+            return InputError(f"{place}: found the stress '{text}', expected moduli: after a step "
+                              "of strain the stress over the strain; a column strain [%] beside it "
+                              "makes them")  # fmt: skip
+        return InputError(
+            f"{place}: found the strain '{text}', expected moduli; of a creep test the strain over "
+            f"the stress is the compliance J{_of_compliance(False)}"
+        )
 
     def shear(self) -> bool | None:
         """Whether the moduli are shear moduli, None: the names do not say."""
@@ -903,7 +961,9 @@ def _could_be(head: Head, names: set[str]) -> list[str]:
     """Quantities that a column may be by its unit, the likeliest one first."""
     told = quantities_of(head.unit) if head.unit else []
     found = [one.name for one in QUANTITIES.values() if one.unit in told]
-    found = [name for name in found if name not in ("run_time", "event_time", "angular_frequency")]
+    # what none is by its unit alone
+    never = ("run_time", "event_time", "angular_frequency", "stress", "strain")
+    found = [name for name in found if name not in never]
     if not found:
         found = ["relaxation_modulus", "storage_modulus", "force", "cor"]
     if "frequency" in names:

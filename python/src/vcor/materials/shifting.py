@@ -65,6 +65,8 @@ class Curve:
     moduli: Floats
     #: Whether the temperature is given in degrees Celsius
     celsius: bool = True
+    #: Whether figures show the frequency in Hz, as the data have it
+    hertz: bool = False
 
     @property
     def x(self) -> Floats:

@@ -15,10 +15,22 @@ from .._library import InputError, UsageError
 from .._text import option
 from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
 from .labels import UNLABELLED, Label, read_label
-from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
+from .names import (
+    CURVES,
+    QUANTITIES,
+    Head,
+    canonical,
+    is_average,
+    plain,
+    plain_units,
+    read_head,
+)
 from .select import Where, conditions
 from .units import plain_unit, size
 
+#: Logarithm of a factor by which replicates differ at most: specimens of a material scatter by some
+#: percent, while moduli at temperatures between which it relaxes differ by more than this
+REPLICATES = 0.2
 #: Heads that a message shows
 MOST_HEADS = 12
 
@@ -121,6 +133,7 @@ class Choice:
                 temperature=head.temperature,
                 flaw="",
                 shear=told.shear if head.shear is None else head.shear,
+                run=head.run,
                 angular=False,
             )
             said.add((at[0], told.key))
@@ -339,6 +352,13 @@ def _table(
             # a line of text: it may be a head whose names are not known
             if sum(map(bool, texts)) < min(width, 2 if units else width):
                 return None
+        if above and not above[-1].remark and any(head.name for head in heads):
+            # a column whose name stands in the line above, next to those of groups
+            over = [read_head(cell) for cell in above[-1].cells[: len(heads)]]
+            heads[: len(over)] = [
+                other if other.name and not head.text.strip() else head
+                for head, other in zip(heads, over, strict=False)
+            ]
         if units:
             flaw = _shifted(grid, units_line, units, heads)
             heads = [
@@ -489,7 +509,7 @@ def _fits(row: Row, table: Table) -> bool:
 
 
 def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
-    """Columns that are wanted, once each, for each temperature in the heads."""
+    """Columns that are wanted, once each, for each temperature in the heads or each measurement."""
     by_key: dict[str, list[Column]] = {}
     for i, head in enumerate(table.heads):
         if head.name and head.key in wanted and not table.is_empty(i):
@@ -500,6 +520,8 @@ def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
             at = column.head.temperature
             if math.isfinite(at) and at not in tags:
                 tags.append(at)
+    if not tags and (runs := _side_by_side(table, by_key)):
+        return [(math.nan, one) for one in runs]
     if not tags:
         return [(math.nan, {key: _one(table, path, key, some) for key, some in by_key.items()})]
     groups: list[Group] = []
@@ -518,6 +540,43 @@ def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
                 found[key] = _one(table, path, key, own or common)
         groups.append((tag, found))
     return groups
+
+
+def _side_by_side(table: Table, by_key: Mapping[str, list[Column]]) -> list[dict[str, Column]]:
+    """Columns of each of several measurements side by side; empty if there is one.
+
+    Names have the numbers of the measurements, or moduli that agree have the same names once more.
+    Columns that all have stand once, a mean of the others is left out.
+    """
+    shared: dict[str, Column] = {}
+    own: dict[str, dict[int, Column]] = {}
+    for key, some in by_key.items():
+        columns = [one for one in some if not is_average(one.head.text)] or some
+        numbered = len({one.head.run for one in columns} - {0}) == len(columns) > 1
+        same = not numbered and all(_same(table, columns[0], one) for one in columns[1:])
+        if len(columns) == 1 or same:
+            shared[key] = columns[0] if len(columns) == 1 else _one(table, "", key, columns)
+            continue
+        alike = len({plain(one.head.text) for one in columns}) == 1
+        numbers = [i if alike else one.head.run for i, one in enumerate(columns, 1)]
+        if len({*numbers}) < len(numbers) or (alike and not _agree(table, key, columns)):
+            return []
+        own[key] = dict(zip(numbers, columns, strict=True))
+    if not own or len({tuple(sorted(one)) for one in own.values()}) > 1:
+        return []
+    runs = sorted(next(iter(own.values())))
+    return [{key: own[key][run] if key in own else shared[key] for key in by_key} for run in runs]
+
+
+def _agree(table: Table, key: str, columns: Sequence[Column]) -> bool:
+    """Whether columns of one name are those of one curve, measured several times."""
+    if key.removesuffix("_sigma") not in CURVES:
+        return False
+    cells = [[one.cell(row) for one in columns] for row in table.rows()]
+    values = np.array([[number(c) if is_number(c) else math.nan for c in row] for row in cells])
+    with np.errstate(all="ignore"):
+        apart = np.nanmax(np.abs(np.log(values / values[:, :1])), axis=1)
+    return bool(np.nanmedian(apart) < REPLICATES)
 
 
 def _one(table: Table, path: str, key: str, columns: list[Column]) -> Column:

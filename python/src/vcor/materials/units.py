@@ -8,13 +8,15 @@ import unicodedata
 
 #: 0 C [K]
 ZERO_C = 273.15
+#: 1 Hz [rad/s]
+TURN = 2 * math.pi
 #: Gas constant [J/(mol K)]
 GAS = 8.31446261815324
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _POWERS = {prefix: 10.0**power for power, prefix in PREFIXES.items()}
 #: By SI unit: units that take a prefix, in SI units, and the prefixes
 _SCALED = {
-    "s": ({"s": 1.0}, "nµm"), "rad/s": ({"rad/s": 1.0, "Hz": 2 * math.pi}, "mkMG"),
+    "s": ({"s": 1.0}, "nµm"), "rad/s": ({"rad/s": 1.0, "Hz": TURN}, "mkMG"),
     "m": ({"m": 1.0}, "nµmk"), "Pa": ({"Pa": 1.0}, "kMG"),
     "N": ({"N": 1.0, "gf": 9.80665e-3}, "nµmkM"),
     "J": ({"J": 1.0}, "nµmkM"), "W": ({"W": 1.0}, "nµmkM"), "kg": ({"g": 1e-3}, "µmk"),
