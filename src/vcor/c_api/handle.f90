@@ -21,13 +21,14 @@ module vcor_c_api_handle
    implicit none
    private
 
-   public :: examined_t, handle_t, open_case, open_points, find_place, find_places, follow, whole_folder, note
-   public :: forget, build, build_points, build_own, find_body, shortens_only
+   public :: examined_t, handle_t, open_case, open_points, find_place, find_places, follow
+   public :: whole_folder, note, forget, build, build_points, build_own, find_body, shortens_only
 
    !> Most numbers that are set from call to call
    integer, parameter :: most_tuned = 16
 
-   !> Single impacts whose data have been examined: those of one material state between two durations
+   !> Single impacts whose data have been examined: those of one state of the materials between
+   !> two durations
    type :: examined_t
       !> Addresses with values for the point, shape (m)
       type(address_t), allocatable :: places(:)
