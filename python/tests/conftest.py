@@ -43,6 +43,15 @@ def program(tmp_path):
 
 
 @pytest.fixture
+def few_starts(monkeypatch):
+    """Identification from fewer starts, where a test is not about them: most of its time."""
+    from vcor.materials import search
+
+    if "VCOR_ALL_TESTS" not in os.environ:
+        monkeypatch.setattr(search, "STARTS", 8)
+
+
+@pytest.fixture
 def sls():
     """The SLS case of the paper."""
     import vcor

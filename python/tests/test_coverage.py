@@ -125,6 +125,15 @@ def test_loops_ask_again_when_they_must():
     assert case.solve().beyond_data != ""
 
 
+def test_what_is_said_of_a_case_is_said_of_no_other():
+    """A copy and a pickled case are examined anew, with the ranges that they have by then."""
+    case = butyl(valid_from=1e-6)
+    assert case.solve().beyond_data != ""
+    for other in (case.copy(), pickle.loads(pickle.dumps(case))):
+        other["butyl.valid_from"] = 1e-12
+        assert other.solve().beyond_data == "" and case.solve().beyond_data != ""
+
+
 def test_warnings_can_be_filtered():
     case = butyl(valid_from=1e-6)
     assert issubclass(vcor.DataRangeWarning, UserWarning)

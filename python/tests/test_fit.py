@@ -209,14 +209,14 @@ def test_arrays_by_name_are_known(data, error, line):
 
 def test_many_points_are_averaged(tmp_path):
     """A record with equal steps in time: the result is that of the same points, spaced by ratio."""
-    time = np.arange(1, 100_001) * 1e-3
+    time = np.arange(1, 20_001) * 1e-3
     noise = np.random.default_rng(4).standard_normal(len(time))
     modulus = 2e6 * (0.4 + 0.6 * np.exp(-time / 5)) * np.exp(0.01 * noise)
     path = tmp_path / "long.csv"
     rows = "".join(f"{t:.6g},{e:.7g}\n" for t, e in zip(time, modulus, strict=True))
     path.write_text("t [s],E [Pa]\n" + rows)
     samples, _, (note,) = samples_of(read_data(path))
-    assert f"100000 points are more than 2000: the fit is to {len(samples.at)} " in note
+    assert f"20000 points are more than 2000: the fit is to {len(samples.at)} " in note
     assert len(samples.at) < 1002 and np.all(np.diff(samples.at) > 0)
     found = vcor.fit(path, model="sls", poisson_ratio=0.4)
     assert found["glassy_modulus"] == pytest.approx(2e6, rel=5e-3)

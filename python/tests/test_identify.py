@@ -18,6 +18,10 @@ from vcor.materials.data import read_data
 from vcor.materials.limits import Fit
 from vcor.materials.observations import observations, read_columns
 
+pytestmark = pytest.mark.usefixtures("few_starts")
+
+#: Starts of a fit
+STARTS = search.STARTS
 DATA = ROOT / "python" / "tests" / "data"
 CASE = """&impact velocity = 1.0 /
 &sphere radius = 0.01, material = 'steel' /
@@ -60,7 +64,9 @@ def guess(model):
 
 
 @pytest.mark.parametrize("model", TRUTH)
-def test_noise_free_data_give_the_parameters(model):
+def test_noise_free_data_give_the_parameters(model, monkeypatch):
+    """From all starts, of which the best one is not the first."""
+    monkeypatch.setattr(search, "STARTS", STARTS)
     free = [f"rubber.{key}" for key in TRUTH[model]]
     found = vcor.identify(guess(model), DATA / f"impacts_of_{model}.csv", free)
     for one, value in zip(found.estimates, TRUTH[model].values(), strict=True):
@@ -160,7 +166,7 @@ def test_a_ramp_of_temperature_at_one_frequency(tmp_path):
     """It says nothing of its own shifts, but fits a material that has them."""
     case = vcor.read(ROOT / "examples" / "identification" / "block.nml")
     rows = []
-    for kelvin in np.arange(290.0, 340.0, 0.8):
+    for kelvin in np.arange(290.0, 340.0, 2.0):
         case["impact.temperature"] = float(kelvin)
         modulus = complex(case.material("rubber").complex_modulus(2 * math.pi))
         rows.append(f"{kelvin - 273.15:.2f},{1 + 1e-4 * (-1) ** len(rows):.4f},"
@@ -226,8 +232,11 @@ def test_moduli_at_temperatures_and_impacts_together(tmp_path):
     # without columns of errors, and as another instrument writes it
     plain = "".join(f"{line.rsplit(',', 2)[0]}\n" for line in body.splitlines())
     file.write_text("T,f,E_stor,E_loss\nC,Hz,MPa,MPa\n" + plain)
+    # the parameters that the units and the modulus act on are enough
     again = {"storage_modulus": 0.02, "loss_modulus": 0.05, **errors}
-    found = vcor.identify(shifted_case(), [impacts, file], free, errors=again)
+    start, some = found.case, ["rubber.glassy_modulus", "rubber.wlf_c2"]
+    start["rubber.glassy_modulus"], start["rubber.wlf_c2"] = 2e7, 100.0
+    found = vcor.identify(start, [impacts, file], some, errors=again)
     assert found["rubber.wlf_c2"] == pytest.approx(80, rel=1e-5)
     # shear moduli become tensile ones by Poisson's ratio of the material, 0.45
     shear = "".join(
@@ -235,7 +244,7 @@ def test_moduli_at_temperatures_and_impacts_together(tmp_path):
         for row in (line.split(",") for line in body.splitlines())
     )
     file.write_text("T,f,G_stor,G_loss\nC,Hz,MPa,MPa\n" + shear)
-    found = vcor.identify(shifted_case(), [impacts, file], free, errors=again)
+    found = vcor.identify(start, [impacts, file], some, errors=again)
     assert found["rubber.glassy_modulus"] == pytest.approx(1.5e7, rel=1e-5)
     # a material without a shift takes one temperature, but not three
     one = {"frequency": frequency[:8], "storage_modulus": storage[8:16], "loss_modulus": loss[8:16],

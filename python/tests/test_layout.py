@@ -60,6 +60,13 @@ def test_a_case_is_no_module_of_figures():
         assert "import_module" not in (ROOT / f"{name}.py").read_text(), name
 
 
+def test_what_a_case_is_stands_in_its_handle():
+    """No module of the core keeps anything about cases but the library."""
+    for name in CORE:
+        text = (ROOT / f"{name}.py").read_text()
+        assert "weakref" not in text and "WeakKey" not in text, name
+
+
 def test_no_circle_of_imports():
     left = arrows()
     assert any(left.values())

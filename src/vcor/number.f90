@@ -135,6 +135,7 @@ contains
    pure function bound_text(bound) result(text)
       real(wp), intent(in) :: bound
       character(len=:), allocatable :: text
+      ! within the range of an integer, 2.1e9
       real(wp), parameter :: whole_below = 1.0e9_wp
 
       text = real_text(bound)

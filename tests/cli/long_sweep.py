@@ -64,11 +64,13 @@ def done_in(path):
     return max(0, path.read_bytes().count(b"\n") - 1)
 
 
-def interrupted(vcor, number=signal.SIGKILL, folder="out", *words):
-    """Run, wait until there is something to resume, and send a signal; what the run said."""
+def interrupted(vcor, number=signal.SIGKILL, folder="out", *words, least=0):
+    """Run, wait until there is something to resume, of this many bytes at least, and send a
+    signal; what the run said."""
     process = begin(vcor, *words, folder=folder)
-    wait_for(vcor.folder / folder / PART, process)
-    while done_in(vcor.folder / folder / PART) < 5:
+    part = vcor.folder / folder / PART
+    wait_for(part, process)
+    while part.stat().st_size < least or done_in(part) < 5:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     os.kill(process.pid, number)

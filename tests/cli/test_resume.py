@@ -24,17 +24,49 @@ from long_sweep import (
     wait_for,
     write_long_sweep,
 )
-from program import FILE, NUMERICAL, USAGE, Vcor, complaint, program
+from program import FILE, NAMES, NUMERICAL, USAGE, Vcor, complaint, program
 
 
 @pytest.fixture(scope="module")
 def solved(tmp_path_factory):
     """A long sweep, and its undisturbed files in the folder ref."""
     vcor = Vcor(tmp_path_factory.mktemp("long"))
-    write_long_sweep(vcor, 2.0)
+    write_long_sweep(vcor, 1.6)
     vcor.reference = vcor("run", "case.nml", "--output", "ref")
     assert vcor.reference.code == NUMERICAL
     return vcor
+
+
+@pytest.fixture(scope="module")
+def cut(solved):
+    """What a run leaves that is killed when it has most of the points: bytes of its file."""
+    # a line has 17 bytes for each column
+    points = (solved.folder / "ref" / "case_summary.csv").read_text().count("\n")
+    interrupted(solved, folder="cut", least=points * 17 * len(NAMES) // 2)
+    data = (solved.folder / "cut" / PART).read_bytes()
+    shutil.rmtree(solved.folder / "cut")
+    return data
+
+
+@pytest.fixture
+def left(long, cut):
+    """The file of a killed run in the folder of results."""
+    part = long.folder / "out" / PART
+    part.parent.mkdir()
+    part.write_bytes(cut)
+    return part
+
+
+@pytest.fixture
+def few(left, vcor):
+    """The same with the first lines of points, and nothing else in the folder of the test, so that
+    a file that is refused takes no time to read; its path, and the program there."""
+    bare = Vcor(vcor.folder / "few")
+    part = bare.folder / "out" / PART
+    part.parent.mkdir(parents=True)
+    part.write_bytes(b"".join(left.read_bytes().splitlines(keepends=True)[:100]))
+    shutil.copy(vcor.folder / "case.nml", bare.folder)
+    return part, bare
 
 
 @pytest.fixture
@@ -59,7 +91,8 @@ def finish(vcor):
     same_files(vcor.folder / "out", vcor.folder / "ref")
 
 
-KILLS = int(os.environ.get("VCOR_KILLS", "6"))
+EVERYTHING = "VCOR_ALL_TESTS" in os.environ
+KILLS = int(os.environ.get("VCOR_KILLS", "20" if EVERYTHING else "3"))
 
 
 def test_kill_at_random(long):
@@ -110,10 +143,8 @@ def test_signal(long, number):
     finish(long)
 
 
-def test_torn_last_line(long):
-    interrupted(long)
-    part = long.folder / "out" / PART
-    data = part.read_bytes()
+def test_torn_last_line(long, left):
+    part, data = left, left.read_bytes()
     end = data.rindex(b"\n", 0, len(data) - 1)
     for cut in (end + 2, len(data) - 1, 9, 0):
         part.write_bytes(data[:cut])
@@ -128,13 +159,11 @@ def test_torn_last_line(long):
         shutil.rmtree(long.folder / "out")
         (long.folder / "kept").rename(long.folder / "out")
         part.write_bytes(data)
-    finish(long)
 
 
-def test_damage(long):
+def test_damage(few):
     """Other damage is an error of one line, which names the line of the file."""
-    interrupted(long)
-    part = long.folder / "out" / PART
+    part, bare = few
     data = part.read_bytes()
     first = data.index(b"\n") + 1
     length = data.index(b"\n", first) + 1 - first
@@ -157,7 +186,7 @@ def test_damage(long):
             else whole[:place] + harm + whole[place + len(harm) :]
         )
         before = part.read_bytes()
-        long.refuses(*words, code=FILE, says=[f"out/{PART}", "damaged in line", "delete"])
+        bare.refuses(*words, code=FILE, says=[f"out/{PART}", "damaged in line", "delete"])
         assert part.read_bytes() == before, what
     # what is written well may still be wrong
     rows = whole[first:].split(b"\n")
@@ -176,11 +205,9 @@ def test_damage(long):
         part.write_bytes(whole[:first] + b"\n".join(changed))
         says = ["damaged in line " + str(place + 2), says]
         if what != "too few points":  # which is no whole number of the program
-            long.refuses(*words, code=FILE, says=[f"out/{PART}", *says])
+            bare.refuses(*words, code=FILE, says=[f"out/{PART}", *says])
     part.write_bytes(b"what?" * 1000)
-    long.refuses(*words, code=FILE, says=[f"out/{PART}", "not of this case and version", "what?"])
-    part.write_bytes(data)
-    finish(long)
+    bare.refuses(*words, code=FILE, says=[f"out/{PART}", "not of this case and version", "what?"])
 
 
 def checked(row):
@@ -194,11 +221,9 @@ def status_of(row):
     return struct.unpack(">d", bytes.fromhex(row.split()[-3].decode()))[0]
 
 
-def test_any_wrong_bit(long):
+def test_any_wrong_bit(long, left, few):
     """Each flipped bit is refused, or the results are the same: of a line that is torn."""
-    interrupted(long)
-    out = long.folder / "out"
-    part = out / PART
+    part, bare = few
     # a few points are enough, so that the rest of a sweep need not be solved again and again
     lines = part.read_bytes().split(b"\n")
     data = b"\n".join([*lines[:3], lines[3][:40]])
@@ -213,20 +238,19 @@ def test_any_wrong_bit(long):
         words = ["damaged in line"] if place >= len(lines[0]) else ["not of this case and version"]
         if place == len(lines[0]):
             words = []
-        long.refuses("run", "case.nml", "--output", "out", "--resume", code=FILE,
+        bare.refuses("run", "case.nml", "--output", "out", "--resume", code=FILE,
                      says=[f"out/{PART}", *words])  # fmt: skip
         assert part.read_bytes() == flipped, (place, bit)
     # of the torn line nothing is read
-    flipped = bytearray(data)
+    flipped = bytearray(left.read_bytes().rpartition(b"\n")[0][:-30])
     flipped[-5] ^= 1
-    part.write_bytes(flipped)
+    left.write_bytes(flipped)
     finish(long)
 
 
-def test_other_columns(long):
+def test_other_columns(few):
     """A program with other columns refuses the file, and names the first one that differs."""
-    interrupted(long)
-    part = long.folder / "out" / PART
+    part, bare = few
     data = part.read_bytes()
     words = ["run", "case.nml", "--output", "out", "--resume"]
     for old, new, says in (
@@ -237,30 +261,26 @@ def test_other_columns(long):
         (b"\n", b" mass\n", "expected "),
     ):
         part.write_bytes(data.replace(old, new, 1))
-        long.refuses(*words, code=FILE, says=[f"out/{PART}", "not of this case and version", says])
-    part.write_bytes(data)
-    finish(long)
+        bare.refuses(*words, code=FILE, says=[f"out/{PART}", "not of this case and version", says])
 
 
-def test_another_case(long):
+def test_another_case(few):
     """Of another case, sweep or version: refused, and the file stays."""
-    interrupted(long, signal.SIGINT)
-    part = long.folder / "out" / PART
+    part, bare = few
     data = part.read_bytes()
     words = ["run", "case.nml", "--output", "out"]
     says = [f"out/{PART}", "not of this case and version"]
-    long.refuses(*words, "--resume", "--set", "rubber.beta=900", code=FILE, says=says)
-    case = (long.folder / "case.nml").read_text()
-    long.write(case.replace("stop = 50.0", "stop = 40.0"))
-    long.refuses(*words, "--resume", code=FILE, says=says)
-    long.write(case)
+    bare.refuses(*words, "--resume", "--set", "rubber.beta=900", code=FILE, says=says)
+    case = (bare.folder / "case.nml").read_text()
+    bare.write(case.replace("stop = 50.0", "stop = 40.0"))
+    bare.refuses(*words, "--resume", code=FILE, says=says)
+    bare.write(case)
     part.write_bytes(data.replace(b"# vcor ", b"# vcor 0", 1))
-    long.refuses(*words, "--resume", code=FILE, says=says)
+    bare.refuses(*words, "--resume", code=FILE, says=says)
     part.write_bytes(data)
     # without --resume any is refused
-    long.refuses(*words, code=FILE, says=[f"out/{PART}", "--resume", "delete"])
+    bare.refuses(*words, code=FILE, says=[f"out/{PART}", "--resume", "delete"])
     assert part.read_bytes() == data
-    finish(long)
 
 
 def test_other_data(vcor, data_files):
@@ -356,7 +376,8 @@ SCRIPT = """
 """
 
 
-@pytest.mark.parametrize("bytes_per_point", [10, 250, 600, 900])
+# The first two end while the points are solved, the last one with the results
+@pytest.mark.parametrize("bytes_per_point", [10, 250, 600, 900] if EVERYTHING else [10, 600, 900])
 def test_full_disk(long, bytes_per_point):
     points = (long.folder / "ref" / "case_summary.csv").read_text().count("\n")
     done = subprocess.run(

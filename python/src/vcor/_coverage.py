@@ -10,8 +10,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from ctypes import byref, c_void_p
-from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,8 +23,8 @@ Case = Any
 
 #: Columns that the remarks are made from
 _JUDGED = ("validity", "validity_cause", "status", "contact_time", "cor")
-#: Keys that change the duration of a contact, and neither a material nor what it is made of
-ONLY_FASTER = ("impact.velocity", "impact.drop_height")
+#: Levels that need no remark
+_NO_REMARK = ("good", "none")
 
 #: Warnings that are not given
 _silent: ContextVar[tuple[type[Warning], ...]] = ContextVar("silent", default=())
@@ -44,25 +43,6 @@ class Numbers(dict[str, float | str]):
 
     validity: str = ""
     beyond_data: str = ""
-
-
-class _Examined(NamedTuple):
-    """Impacts for which the library has been asked: those between two contact times."""
-
-    #: Values of the points but for those of `ONLY_FASTER`
-    point: tuple[tuple[str, float], ...]
-    shortest: float
-    longest: float
-    #: What it said; None if no material has data of a known range
-    lines: str | None
-
-
-_examined: WeakKeyDictionary[Case, _Examined] = WeakKeyDictionary()
-
-
-def forget(case: Case) -> None:
-    """Forget what has been examined: a value of the case has changed."""
-    _examined.pop(case, None)
 
 
 @contextlib.contextmanager
@@ -93,7 +73,7 @@ def validity_of(levels: ArrayLike, causes: ArrayLike) -> str:
     # the worst first; good and none need no remark
     for word in reversed(_library.columns(0)["validity"].labels.split()):
         found = level == word
-        if word in ("good", "none") or not found.any():
+        if word in _NO_REMARK or not found.any():
             continue
         at = f"{found.sum()} of {len(level)} points " if len(level) > 1 else ""
         measures = dict.fromkeys(cause[found].tolist())
@@ -127,14 +107,21 @@ def about(
     dict
         Attributes: `validity`, and `beyond_data` where there is anything to say.
     """
-    columns = _library.columns(0)
-    levels, causes = (columns[name].values(results[:, i - len(_JUDGED)])
-                      for i, name in enumerate(_JUDGED[:2]))  # fmt: skip
-    said = {"validity": validity_of(levels, causes)}
+    columns = [_library.columns(0)[name] for name in _JUDGED[:2]]
+    if len(results) == 1:
+        # a loop asks for one point after another
+        level_of_point, cause = (
+            str(column.value(results[0, i - len(_JUDGED)])) for i, column in enumerate(columns)
+        )
+        is_plain = level_of_point in _NO_REMARK
+        said = {"validity": level_of_point if is_plain else f"{level_of_point} ({cause})"}
+    else:
+        said = {"validity": validity_of(*(column.values(results[:, i - len(_JUDGED)])
+                                          for i, column in enumerate(columns)))}  # fmt: skip
     if lines := _beyond_data(case, addresses, table, *results[:, -3:].T):
         said["beyond_data"] = lines
     is_known = "validity" in ([asked] if isinstance(asked, str) else asked or ())
-    is_known = is_known or said["validity"] in ("good", "none")
+    is_known = is_known or said["validity"] in _NO_REMARK
     if not is_known and ValidityWarning not in _silent.get():
         warnings.warn(
             f"{case.name}: validity: {said['validity']}", ValidityWarning, stacklevel=level
@@ -161,37 +148,16 @@ def _beyond_data(
     contact_time: Floats,
     cor: Floats,
 ) -> str:
-    """Lines about data that do not cover the points; empty if they do.
-
-    One impact after another asks only if its contact is shorter or longer than those before: the
-    library examines the shortest and the longest one of many.
-    """
+    """Lines about data that do not cover the points; empty if they do."""
     # what nobody hears takes two solutions
     if DataRangeWarning in _silent.get():
         return ""
-    known = np.isfinite(contact_time)
-    shortest = float(np.min(contact_time, where=known, initial=np.inf))
-    longest = float(np.max(contact_time, where=known, initial=-np.inf))
-    point: tuple[Any, ...] = ()
-    if len(table) == 1:
-        point = tuple((address, value) for address, value in zip(addresses, table[0], strict=True)
-                      if address not in ONLY_FASTER)  # fmt: skip
-        last = _examined.get(case)
-        if last and (last.lines is None or last.point == point
-                     and last.shortest <= shortest and longest <= last.longest):  # fmt: skip
-            return (last.lines or "").strip("\n")
     text = c_void_p()
     with contextlib.suppress(Error):
         call("vcor_beyond_data", case._pointer, len(addresses),
              _library.texts(tuple(addresses)), len(table), np.ascontiguousarray(table),
              *map(np.ascontiguousarray, (status, contact_time, cor)), byref(text))  # fmt: skip
-    lines = _library.take_text(text)
-    if len(table) == 1:
-        last = _examined.get(case)
-        if last and last.point == point:
-            shortest, longest = min(shortest, last.shortest), max(longest, last.longest)
-        _examined[case] = _Examined(point, shortest, longest, lines)
-    return (lines or "").strip("\n")
+    return (_library.take_text(text) or "").strip("\n") if text else ""
 
 
 def of_columns(variables: Mapping[Any, Any]) -> dict[str, str]:

@@ -155,14 +155,11 @@ class Case:
     def add(self, materials: Case) -> None:
         """Complete the case by &material groups, whose data files stay where they are."""
         call("vcor_add_materials", self._pointer, materials._pointer)
-        _coverage.forget(self)
 
     def __setitem__(self, address: str, value: ArrayLike) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
         text = value if isinstance(value, str) else written(value, address)
         call("vcor_set", self._pointer, address, text)
-        if address not in _coverage.ONLY_FASTER:
-            _coverage.forget(self)
 
     def __getitem__(self, address: str) -> Value | None:
         """Value at an address, given or by default; None if there is none."""

@@ -3,13 +3,15 @@
 module vcor_c_api_coverage
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_null_ptr, c_ptr
-   use vcor_c_api_handle, only : build_own, build_points, find_places, &
-      handle_t, open_case, open_points
+   use vcor_c_api_handle, only : build_own, build_points, examined_t, find_places, handle_t, &
+      open_case, open_points, shortens_only
    use vcor_c_api_values, only : c_text, demand, get_array, put_copy, put_pointer, report_error
-   use vcor_case_case, only : address_t
+   use vcor_case_case, only : address_t, operator(==)
+   use vcor_case_inputs, only : is_same
    use vcor_error, only : error_t, error_usage, raise
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_coverage, only : find_remarks, has_data, outcomes_t, remark_length
+   use vcor_kinds, only : wp
    use vcor_sweep_points, only : sweep_t
    implicit none
    private
@@ -32,13 +34,9 @@ contains
       type(error_t), allocatable :: trouble
       type(c_ptr), pointer :: addresses(:)
       real(c_double), pointer :: values(:, :), status(:), contact_time(:), cor(:)
-      type(sweep_t) :: sweep
       type(address_t), allocatable :: places(:)
       type(outcomes_t) :: outcomes
-      character(len=remark_length), allocatable :: remarks(:)
       character(len=:), allocatable :: lines
-      integer :: i
-      logical :: is_point
 
       call put_pointer(text, c_null_ptr)
       call open_case(self, handle, trouble)
@@ -59,24 +57,91 @@ contains
             .and. ieee_is_finite(cor)
          where (outcomes%known) outcomes%known = nint(status) == contact_separated
 !$omp critical (vcor_c_api)
-         if (m == 0) then
-            call build_own(handle, sweep, is_point, trouble)
-         else
-            call find_places(handle%case, addresses, places, trouble)
-            if (.not. allocated(trouble)) &
-               call build_points(handle, places, values, sweep, trouble, addresses)
-         end if
-         if (.not. allocated(trouble)) then
-            call find_remarks(sweep%case, sweep%grid, outcomes, .true., remarks)
-            lines = ''
-            do i = 1, size(remarks)
-               lines = lines//trim(remarks(i))//new_line('a')
-            end do
-            if (has_data(sweep%case)) call put_copy(text, c_text(lines), trouble)
-         end if
+         call find_places(handle%case, addresses, places, trouble)
+         if (.not. allocated(trouble)) call examine(handle, addresses, places, values, outcomes, &
+            lines, trouble)
+         if (.not. allocated(trouble) .and. allocated(lines)) &
+            call put_copy(text, c_text(lines), trouble)
 !$omp end critical (vcor_c_api)
       end if
       code = report_error(trouble, error)
    end function vcor_beyond_data
+
+   !> Find what the data do not say about points. A single point is examined only if its contact is
+   !> shorter or longer than those before, of the same values but for the velocity: data that cover
+   !> the shortest and the longest contact cover those between
+   subroutine examine(handle, addresses, places, values, outcomes, lines, error)
+      type(handle_t), intent(inout) :: handle
+      !> Addresses as the caller has them, shape (m), and their places
+      type(c_ptr), intent(in) :: addresses(:)
+      type(address_t), intent(in) :: places(:)
+      !> Values, shape (m, n)
+      real(wp), intent(in) :: values(:, :)
+      type(outcomes_t), intent(in) :: outcomes
+      !> A line for each remark; unallocated: no material has data of a known range
+      character(len=:), allocatable, intent(out) :: lines
+      !> Error of the case, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(sweep_t) :: sweep
+      character(len=remark_length), allocatable :: remarks(:)
+      logical :: matters(size(places)), is_single, is_point, is_alike
+      real(wp) :: shortest, longest
+      integer :: i
+
+      is_single = size(outcomes%known) == 1
+      is_alike = .false.
+      shortest = minval(outcomes%contact_time, mask=outcomes%known)
+      longest = maxval(outcomes%contact_time, mask=outcomes%known)
+      if (is_single) then
+         matters = [(.not. shortens_only(handle%case, places(i)), i=1, size(places))]
+         if (allocated(handle%examined)) is_alike = like(handle%examined)
+      end if
+      if (is_alike) then
+         if (allocated(handle%examined%lines)) lines = handle%examined%lines
+         if (.not. allocated(lines)) return
+         if (handle%examined%shortest <= shortest .and. longest <= handle%examined%longest) return
+         deallocate (lines)
+      end if
+      if (size(places) == 0) then
+         call build_own(handle, sweep, is_point, error)
+      else
+         call build_points(handle, places, values, sweep, error, addresses)
+      end if
+      if (allocated(error)) return
+      if (has_data(sweep%case)) then
+         call find_remarks(sweep%case, sweep%grid, outcomes, .true., remarks)
+         lines = ''
+         do i = 1, size(remarks)
+            lines = lines//trim(remarks(i))//new_line('a')
+         end do
+      end if
+      if (.not. is_single) return
+      if (.not. is_alike) then
+         if (allocated(handle%examined)) deallocate (handle%examined)
+         allocate (handle%examined)
+         handle%examined%places = places
+         handle%examined%values = values(:, 1)
+         handle%examined%shortest = shortest
+         handle%examined%longest = longest
+      end if
+      handle%examined%shortest = min(shortest, handle%examined%shortest)
+      handle%examined%longest = max(longest, handle%examined%longest)
+      if (allocated(lines)) handle%examined%lines = lines
+
+   contains
+
+      !> Whether the point differs from those that were examined in the duration of its contact only
+      function like(others) result(yes)
+         type(examined_t), intent(in) :: others
+         logical :: yes
+
+         yes = size(others%places) == size(places)
+         if (yes) yes = all(others%places == places)
+         ! where no material has data no value gives it any
+         if (yes .and. allocated(others%lines)) &
+            yes = all(.not. matters .or. is_same(others%values, values(:, 1)))
+      end function like
+   end subroutine examine
 
 end module vcor_c_api_coverage

@@ -21,11 +21,25 @@ module vcor_c_api_handle
    implicit none
    private
 
-   public :: handle_t, open_case, open_points, find_place, find_places, follow, whole_folder, note
-   public :: forget, build, build_points, build_own, find_body
+   public :: examined_t, handle_t, open_case, open_points, find_place, find_places, follow
+   public :: whole_folder, note, forget, build, build_points, build_own, find_body, shortens_only
 
    !> Most numbers that are set from call to call
    integer, parameter :: most_tuned = 16
+
+   !> Single impacts whose data have been examined: those of one state of the materials between
+   !> two durations
+   type :: examined_t
+      !> Addresses with values for the point, shape (m)
+      type(address_t), allocatable :: places(:)
+      !> The values, shape (m)
+      real(wp), allocatable :: values(:)
+      !> Shortest and longest contact [s]
+      real(wp) :: shortest = 0.0_wp, longest = 0.0_wp
+      !> What the data do not say about them, a line each; unallocated: no material has data of a
+      !> known range
+      character(len=:), allocatable :: lines
+   end type examined_t
 
    !> Target of a `vcor_case`
    type :: handle_t
@@ -41,6 +55,8 @@ module vcor_c_api_handle
       type(address_t), allocatable :: looked_at(:)
       !> Notes on implausible numbers that were handed over, without the place of the number
       character(len=note_length), allocatable :: told(:)
+      !> Single impacts about which `vcor_beyond_data` was asked last; unallocated: none
+      type(examined_t), allocatable :: examined
       !> What is common to its impacts
       type(sweep_t) :: sweep
       !> Addresses for which `sweep` was built; unallocated if it must be built
@@ -150,6 +166,8 @@ contains
 
       if (allocated(handle%solver) .and. place%group == find_group('solver')) &
          deallocate (handle%solver)
+      if (allocated(handle%examined) .and. .not. shortens_only(handle%case, place)) &
+         deallocate (handle%examined)
       is_number = all(groups(place%group)%name /= ['sweep ', 'output', 'case  ']) .and. &
          (place%element > 0 .or. catalogue(place%row)%value_kind == real_key)
       if (.not. is_number) then
@@ -187,7 +205,18 @@ contains
       if (allocated(handle%built_for)) deallocate (handle%built_for)
       if (allocated(handle%tuned)) deallocate (handle%tuned)
       if (allocated(handle%looked_at)) deallocate (handle%looked_at)
+      if (allocated(handle%examined)) deallocate (handle%examined)
    end subroutine forget
+
+   !> Whether a value changes the duration of a contact, and neither a material nor its temperature
+   pure function shortens_only(case, place) result(yes)
+      type(case_t), intent(in) :: case
+      type(address_t), intent(in) :: place
+      logical :: yes
+
+      yes = place == case%address('impact', 'velocity') &
+         .or. place == case%address('impact', 'drop_height')
+   end function shortens_only
 
    !> Check a case and read its data files
    subroutine check(case, error)

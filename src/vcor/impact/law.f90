@@ -31,7 +31,8 @@ module vcor_impact_law
 
    !> Exponent of Hertzian contact of curved surfaces [-]
    real(wp), parameter :: hertz = 1.5_wp
-   !> Most iterations of Newton's method, and relative change after which none is left
+   !> Most iterations of Newton's method, and relative change after which none is left: the method
+   !> squares it, so that the next one is below the rounding of 1e-16
    integer, parameter :: most_iterations = 60
    real(wp), parameter :: close = 1.0e-9_wp
 
