@@ -648,7 +648,7 @@ contains
 
    !> Neighbours of an impact take its mesh, whatever suits them, until another one is settled
    subroutine test_settled()
-      real(wp), parameter :: velocity(*) = [1.6_wp, 1.7_wp, 1.8_wp]
+      real(wp), parameter :: velocity(*) = [1.5_wp, 1.6_wp, 1.7_wp]
       type(coupled_t), allocatable :: solver
       type(impact_t) :: impact
       type(trajectory_t) :: near, own
