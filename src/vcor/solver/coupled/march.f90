@@ -493,23 +493,17 @@ contains
 
    contains
 
-      !> R V/c^2, with the speed of shear waves at its rate, or that of the steps if it is shorter
+      !> R V/c^2, with the speed of shear waves in a step, as in the waves that pass
       pure function time_of_waves(product) result(time)
          !> R V [m2/s]
          real(wp), intent(in) :: product
          !> R V/c^2 [s]
          real(wp) :: time
 
-         ! the time settles at once unless the plate relaxes within it
-         integer, parameter :: iterations = 4
          real(wp) :: rate
-         integer :: i
 
-         time = course%dt
-         do i = 1, iterations
-            rate = 1.0_wp/max(time, course%dt)
-            time = product*(real(impact%face%per_shear_speed(cmplx(rate, kind=wp)), wp)/rate)**2
-         end do
+         rate = 1.0_wp/course%dt
+         time = product*(real(impact%face%per_shear_speed(cmplx(rate, kind=wp)), wp)/rate)**2
       end function time_of_waves
 
       !> Displacement of a node by the waves that pass
