@@ -1,13 +1,11 @@
 !> Exact contact with waves: the row of springs of `vcor_impact_face` marched in time together with
 !> the sphere, so that contact, waves and relaxation are solved as one
 !>
-!> An impact is marched with n/8, n/4, n/2 and n steps, from which results are extrapolated to steps
-!> of no length, and once more with fewer hats, from which they are extrapolated to any number of
-!> hats. What each extrapolation adds says how far it can be trusted; the steps or the hats are
-!> refined, whichever leave the larger error, until the accuracy is reached. Window and radius of
-!> the row follow the contact and are rounded up, so that neighbours in a sweep share kernels; a
-!> kernel is the same whether it is shared or not. For differences the mesh of one impact is kept
-!> for others.
+!> A mesh has n/2 and n steps, from which results are extrapolated to none; their error is the
+!> distance from what the next coarser mesh gives, which has half of the steps, fewer springs and
+!> fewer hats. The mesh is refined until the accuracy is reached. Window and radius of the row
+!> follow the contact and are rounded up, so that neighbours in a sweep share kernels; a kernel is
+!> the same whether it is shared or not. For differences the mesh of one impact is kept for others.
 module vcor_solver_coupled
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_face, only : face_t
@@ -36,8 +34,8 @@ module vcor_solver_coupled
 
    !> Mesh of an impact
    type :: plan_t
-      !> Steps over the window and elements of the hats; 0: to be found
-      integer :: steps = 0, elements = 0
+      !> Level; -1: to be found
+      integer :: level = -1
       !> Duration of all steps [s] and radius of the row of springs [m]
       real(wp) :: window = 0.0_wp, radius = 0.0_wp
       !> Duration of all steps for the largest force [s]; 0 if it needs none of its own
@@ -61,29 +59,18 @@ module vcor_solver_coupled
       procedure :: settle
    end type coupled_t
 
-   !> Marches of an impact
-   type :: marches_t
-      !> With n/8, n/4, n/2 and n steps
-      type(course_t) :: course(0:3)
-      !> The steps n; 0: none yet
-      integer :: steps = 0
-      !> The elements of their hats
-      integer :: elements = 0
-      !> With fewer elements, and the steps of `course(same)`
-      type(course_t) :: fewer
-      integer :: same = 0
-      !> Its elements and steps
-      integer :: fewer_elements = 0, fewer_steps = 0
-   end type marches_t
-
-   !> An extrapolated result
-   type :: result_t
-      real(wp) :: value = 0.0_wp
-      !> Estimated errors of the value by steps and by hats
-      real(wp) :: by_steps = 0.0_wp, by_hats = 0.0_wp
-   contains
-      procedure :: error => error_of_result
-   end type result_t
+   !> A mesh on which an impact is solved twice
+   type :: pair_t
+      !> With half of the steps, and with all
+      type(course_t) :: coarse, fine
+      !> Extrapolated coefficient of restitution of the sphere [-], contact time [s], largest force
+      !> [N] and displacement [m] and their times [s]
+      real(wp) :: cor = 0.0_wp, contact_time = 0.0_wp
+      real(wp) :: max_force = 0.0_wp, time_of_max_force = 0.0_wp
+      real(wp) :: depth = 0.0_wp, time_of_depth = 0.0_wp
+      !> Largest forces of both, not extrapolated [N]
+      real(wp) :: coarse_force = 0.0_wp, fine_force = 0.0_wp
+   end type pair_t
 
    !> Scales to which window and radius are rounded
    type :: scale_t
@@ -113,26 +100,14 @@ module vcor_solver_coupled
       real(wp) :: value = 0.0_wp
       !> Its time [s]
       real(wp) :: time = 0.0_wp
-      !> Root mean square of what the values deviate from the fit
-      real(wp) :: noise = 0.0_wp
    end type peak_t
 
-   !> Steps at first and at most
-   integer, parameter :: first_steps = 160, most_steps = 16*first_steps
-   !> Elements of the hats at first and at most. Of a layer, whose response varies over its
-   !> thickness, three more for each thickness that the contact is wide
-   integer, parameter :: first_elements = 8, most_elements = 80
-   real(wp), parameter :: elements_per_thickness = 3.0_wp
+   !> Steps of the coarsest mesh, the finest mesh, and its steps
+   integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
    !> Operations that an impact may take, some ten seconds
    real(wp), parameter :: most_work = 4.0e10_wp
-   !> Ratio of elements of the hats when they are refined, and of those of the first mesh
-   real(wp), parameter :: hats_ratio = 1.5_wp, first_ratio = 1.6_wp
-   !> Order by which the error is expected to fall with the steps at the best, as h^2 is
-   !> extrapolated away
-   integer, parameter :: best_order = 3
-   !> Springs at least, and springs per step
-   integer, parameter :: least_springs = 400
-   real(wp), parameter :: springs_per_step = 2.5_wp
+   !> Ratio of the errors of two levels at the best
+   real(wp), parameter :: best_ratio = 8.0_wp
    !> Steps to the time scale of a contact that resolve it
    real(wp), parameter :: resolved = 8.0_wp
    !> Ratios to which window and radius are rounded up, and their margin
@@ -177,21 +152,17 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      ! part of the accuracy that the estimated error must reach: of 121 impacts the error was more
-      ! than twice the estimate in 3
-      real(wp), parameter :: share = 0.5_wp
+      ! for contact time and largest force, which nothing refines
+      real(wp), parameter :: careful = 2.0_wp
       ! relative error of the largest force from which it is computed again, if it comes early
       real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
       ! window of that computation divided by the time of the largest force
       real(wp), parameter :: longer = 3.0_wp
-      type(marches_t) :: marches
+      type(pair_t) :: before, now
       type(course_t) :: course
       type(search_t) :: search
-      type(plan_t) :: plan
-      type(result_t) :: cor, force, time
-      type(peak_t) :: top(0:3), fewer
-      logical :: ended
-      integer :: i
+      real(wp) :: cor_error, peak_window
+      integer :: level, status
 
       search%scale = scales(impact)
       search%end_time = self%settings%end_time
@@ -199,67 +170,75 @@ contains
          impact%patience(impact%time_scale(precise))
       self%work = 0.0_wp
       self%found = plan_t()
-      plan = self%kept
+      search%window = self%kept%window
+      search%radius = self%kept%radius
+      level = min(self%kept%level, 0)
       do
-         if (plan%steps == 0) then
+         if (level < 0) then
             call scout(self, impact, search, course, error)
             if (allocated(error)) return
             if (course%status /= course_ended) then
                call record_contact(course, impact, trajectory)
                return
             end if
-            plan = first_plan(impact%face, search%window, search%radius)
-            marches = marches_t()
+            level = 0
          end if
-         call solve_meshes(self, impact, plan, marches, ended, error)
+         call solve_pair(self, impact, mesh_of(level, impact%face, search%window, search%radius), &
+            now, error)
          if (allocated(error)) return
-         if (.not. ended) then
+         status = now%coarse%status
+         if (status == course_ended) status = now%fine%status
+         if (status /= course_ended) then
             ! what the search has found does not hold
-            if (any(marches%course%status == course_outlasts)) call search%note(plan%window, &
-               plan%window/real(plan%steps, wp))
+            if (status == course_outlasts) call search%note(search%window, now%coarse%dt)
             search%steps = min(2*search%steps, most_steps)
             search%attempt = search%attempt + 1
-            plan = plan_t()
+            level = -1
             cycle
          end if
-         cor = extrapolated(marches, plan, marches%course%cor(impact), marches%fewer%cor(impact), &
-            is_smooth=is_curved(impact))
-         if (self%kept%steps > 0 .or. cor%error() <= share*self%settings%accuracy) exit
-         call refine(plan, marches, cor, self%settings%accuracy, impact%time_scale(precise), &
-            ended, error)
-         if (ended) exit
-         if (allocated(error)) return
+         if (level > 0) then
+            cor_error = distance(before%coarse%cor(impact), before%fine%cor(impact), &
+               now%coarse%cor(impact), now%fine%cor(impact))
+            if (level == self%kept%level .or. &
+                cor_error <= self%settings%accuracy .and. self%kept%level < 0) exit
+            ! steps that do not resolve the contact say nothing
+            if (level == finest .or. self%kept%level < 0 &
+                .and. now%coarse%dt*resolved <= impact%time_scale(precise) .and. &
+                cor_error > self%settings%accuracy*best_ratio**(finest - level)) then
+               call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
+                  //'solver.accuracy, '//as_text(self%settings%accuracy)//', by ' &
+                  //as_text(cor_error - self%settings%accuracy)//' with '//steps_text(level) &
+                  //' steps, and more steps would take too long: give a larger one')
+               return
+            end if
+         end if
+         before = now
+         level = level + 1
       end do
-      time = extrapolated(marches, plan, marches%course%contact_time, marches%fewer%contact_time, &
-         is_smooth=.false.)
-      do i = 0, 3
-         top(i) = peak(marches%course(i)%force(0:marches%course(i)%steps), marches%course(i)%dt)
-      end do
-      fewer = peak(marches%fewer%force(0:marches%fewer%steps), marches%fewer%dt)
-      force = extrapolated(marches, plan, top%value, fewer%value, is_smooth=.false.)
-      call record(marches, impact, cor%value, time%value, trajectory)
+      call record(now, impact, trajectory)
       trajectory%accuracy = self%settings%accuracy
-      trajectory%contact_time_error = time%error() + marches%course(3)%time_error
-      trajectory%cor_sphere_error = cor%error() &
-         + impact%gravity*marches%course(3)%time_error/impact%velocity
+      trajectory%contact_time_error = distance(before%coarse%contact_time, &
+         before%fine%contact_time, now%coarse%contact_time, now%fine%contact_time)*careful &
+         + now%fine%time_error
+      trajectory%cor_sphere_error = cor_error &
+         + impact%gravity*now%fine%time_error/impact%velocity
       trajectory%cor_error = trajectory%cor_sphere_error
-      trajectory%max_force = force%value
-      trajectory%time_of_max_force = limit(top(2)%time, top(3)%time)
-      trajectory%max_force_error = force%error() + top(3)%noise
-      if (begins_without_bound([(marches%course(i)%force(1), i=1, 3)])) &
-         trajectory%max_force_error = max(trajectory%max_force_error, force%value)
+      trajectory%max_force_error = distance(before%coarse_force, before%fine_force, &
+         now%coarse_force, now%fine_force)*careful
+      if (begins_without_bound([before%coarse%force(1), now%coarse%force(1), &
+                                now%fine%force(1)])) trajectory%max_force_error = &
+         max(trajectory%max_force_error, now%max_force)
+      peak_window = self%kept%peak_window
       ! at first contact there is none that shorter steps would resolve
-      if (self%kept%steps == 0) then
-         plan%peak_window = 0.0_wp
-         if (trajectory%max_force_error > sharp*force%value .and. &
-             trajectory%time_of_max_force < early*time%value .and. &
-             trajectory%time_of_max_force > marches%course(3)%dt) plan%peak_window = &
-            rounded(longer*trajectory%time_of_max_force, window_ratio, search%scale%time)
-      end if
-      if (plan%peak_window > 0.0_wp) call resolve_peak(self, impact, plan, trajectory, error)
+      if (self%kept%level < 0 .and. trajectory%max_force_error > sharp*now%max_force .and. &
+          now%time_of_max_force < early*now%contact_time .and. &
+          now%time_of_max_force > now%fine%dt) peak_window = rounded(longer*now%time_of_max_force, &
+         window_ratio, search%scale%time)
+      if (peak_window > 0.0_wp) call resolve_peak(self, impact, search%radius, peak_window, &
+         trajectory, error)
       if (allocated(error)) return
-      self%found = plan
-      if (time%value > search%end_time) trajectory%status = contact_lasting
+      self%found = plan_t(level, search%window, search%radius, peak_window)
+      if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
 
    !> Whether the force of the first step grows without bound as the steps are halved, as that of a
@@ -272,115 +251,45 @@ contains
       yes = force(2) > force(1) .and. force(3) - force(2) >= force(2) - force(1)
    end function begins_without_bound
 
-   !> First mesh of an impact
-   pure function first_plan(face, window, radius) result(plan)
+   !> Estimated error of an extrapolated result, the largest of three so that they do not cancel by
+   !> chance: what the level changes, what springs and hats change at equal steps, and what is left
+   !> if the steps have less effect than of second order
+   elemental function distance(long, middle, equal, short)
+      !> Results of the level before with its longer and its shorter steps
+      real(wp), intent(in) :: long, middle
+      !> Results of this level, with steps equal to those shorter ones and with half of them
+      real(wp), intent(in) :: equal, short
+      real(wp) :: distance
+
+      distance = max(abs(limit(equal, short) - limit(long, middle)), abs(equal - middle))
+      associate (before => middle - long, now => short - equal)
+         if (abs(before) > 2.0_wp*abs(now)) then
+            ! the rest of a geometric series less the third that extrapolation takes away
+            distance = max(distance, abs(now)*(now/(before - now) - 1.0_wp/3.0_wp))
+         else
+            distance = max(distance, 2.0_wp/3.0_wp*abs(now))
+         end if
+      end associate
+   end function distance
+
+   !> Mesh of a level: twice the steps of the level before, with more springs and hats. The response
+   !> of a layer varies over its thickness, which the longest hats resolve
+   pure function mesh_of(level, face, window, radius) result(mesh)
+      !> Level, from 0
+      integer, intent(in) :: level
       type(face_t), intent(in) :: face
-      !> Duration of all steps [s] and radius of the row of springs [m]
-      real(wp), intent(in) :: window, radius
-      type(plan_t) :: plan
+      !> Duration of all steps [s]
+      real(wp), intent(in) :: window
+      !> Radius of the row of springs [m]
+      real(wp), intent(in) :: radius
+      type(mesh_t) :: mesh
 
-      real(wp) :: elements
+      integer, parameter :: most_for_layer = 24
 
-      elements = real(first_elements, wp)
-      if (face%thickness > 0.0_wp) elements = elements + elements_per_thickness*radius &
-         /max(face%thickness, radius/8.0_wp)
-      plan = plan_t(first_steps, int(elements), window, radius)
-   end function first_plan
-
-   !> Refine what leaves the larger error
-   pure subroutine refine(plan, marches, cor, accuracy, time_scale, enough, error)
-      type(plan_t), intent(inout) :: plan
-      type(marches_t), intent(in) :: marches
-      !> Coefficient of restitution
-      type(result_t), intent(in) :: cor
-      !> Its error at most
-      real(wp), intent(in) :: accuracy
-      !> Time scale of the contact [s]
-      real(wp), intent(in) :: time_scale
-      !> Whether no mesh is finer and the error is within the accuracy; the mesh is as it was
-      logical, intent(out) :: enough
-      !> Error of code `error_numerical`: no mesh will reach the accuracy
-      type(error_t), allocatable, intent(out) :: error
-
-      type(plan_t) :: finer
-      real(wp) :: best
-      integer :: steps
-
-      enough = .false.
-      steps = plan%steps
-      finer = plan
-      if (cor%by_hats > cor%by_steps) then
-         finer%elements = ceiling(hats_ratio*real(plan%elements, wp))
-         enough = finer%elements > most_elements
-      else
-         finer%steps = 2*steps
-         ! steps that do not resolve the contact say nothing
-         best = cor%by_steps*(real(steps, wp)/real(most_steps, wp))**best_order
-         enough = finer%steps > most_steps .or. &
-            best > accuracy .and. marches%course(0)%dt*resolved <= time_scale
-      end if
-      if (.not. enough) plan = finer
-      if (.not. enough .or. cor%error() <= accuracy) return
-      call raise(error, error_numerical, 'the estimated error of cor_sphere exceeds ' &
-         //'solver.accuracy, '//as_text(accuracy)//', by '//as_text(cor%error() - accuracy) &
-         //' with '//steps_text(steps)//' steps, and more steps would take too long: give a ' &
-         //'larger one')
-   end subroutine refine
-
-   !> Estimated error of a result
-   elemental function error_of_result(self) result(error)
-      class(result_t), intent(in) :: self
-      real(wp) :: error
-
-      error = self%by_steps + self%by_hats
-   end function error_of_result
-
-   !> Extrapolate to steps of no length and any number of hats. What the extrapolations add says how
-   !> far they can be trusted.
-   !>
-   !> The error of the steps is h^2 and, where the contact is smooth enough in time, h^3; both are
-   !> taken away. Two values that agree by chance do not make it small: it is no less than a seventh
-   !> of what the same extrapolation has added for twice as long steps, and no less than what is
-   !> left if the order is lower, as for bodies that begin with a sudden force. The contact time and
-   !> the largest force depend on single steps and springs as well; of them only h^2 is taken away,
-   !> and half of the difference from the value for twice as long steps is stated. The error of the
-   !> hats is of second order in their length
-   pure function extrapolated(marches, plan, value, fewer, is_smooth) result(found)
-      type(marches_t), intent(in) :: marches
-      type(plan_t), intent(in) :: plan
-      !> Values of `marches%course`, shape (0:3), and of `marches%fewer`
-      real(wp), intent(in) :: value(0:), fewer
-      !> Whether the value depends on no single step, which that of a punch does, whose force may
-      !> begin at once
-      logical, intent(in) :: is_smooth
-      type(result_t) :: found
-
-      real(wp) :: two(0:2), rest
-
-      two = limit(value(0:2), value(1:3))
-      found%value = two(2)
-      if (marches%course(1)%status /= course_ended) then
-         found%by_steps = abs(value(3) - value(2))
-      else if (marches%course(0)%status /= course_ended) then
-         found%by_steps = 0.5_wp*abs(two(2) - two(1))
-      else
-         associate (before => two(1) - two(0), now => two(2) - two(1))
-            if (is_smooth) then
-               found%value = two(2) + now/7.0_wp
-               found%by_steps = max(abs(now)/7.0_wp, abs(before)/49.0_wp)
-            else
-               found%by_steps = 0.5_wp*abs(now)
-            end if
-            ! of lower order: the rest of a geometric series
-            if (before*now > 0.0_wp .and. abs(before) < 8.0_wp*abs(now)) found%by_steps = &
-               max(found%by_steps, abs(now)/max(before/now - 1.0_wp, 0.5_wp))
-         end associate
-      end if
-      rest = (value(marches%same) - fewer) &
-         /((real(plan%elements, wp)/real(marches%fewer_elements, wp))**2 - 1.0_wp)
-      found%value = found%value + rest
-      found%by_hats = abs(rest)
-   end function extrapolated
+      mesh = mesh_t(first_steps*2**level, nint(112.0_wp*1.5_wp**level), 8 + 2*level, window, radius)
+      if (face%thickness > 0.0_wp) mesh%hats = mesh%hats &
+         + int(min(3.0_wp*radius/face%thickness, real(most_for_layer, wp)))
+   end function mesh_of
 
    !> Scales of an impact that do not depend on its velocity, so that a sweep of velocities shares
    !> kernels, and not on units: the length at which the body is as deep as it is wide, and the time
@@ -562,107 +471,72 @@ contains
       end do
    end subroutine make_room
 
-   !> March with all steps and their halves, and with fewer hats; what was marched before is not
-   !> marched again
-   subroutine solve_meshes(self, impact, plan, marches, ended, error)
+   !> March on a mesh with half of its steps and with all, and extrapolate to none: the error is of
+   !> second order
+   subroutine solve_pair(self, impact, mesh, pair, error)
       type(coupled_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
-      type(plan_t), intent(in) :: plan
-      type(marches_t), intent(inout) :: marches
-      !> Whether the marches with the most steps have ended
-      logical, intent(out) :: ended
+      type(mesh_t), intent(in) :: mesh
+      type(pair_t), intent(out) :: pair
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: first, i, same
+      type(mesh_t) :: half
+      type(peak_t) :: one, two
 
-      ! hats are compared at the fewest steps that resolve a contact
-      do same = 0, 2
-         if (steps_of(plan, same) >= first_steps/2) exit
-      end do
-      first = 0
-      if (marches%steps > 0 .and. marches%elements /= plan%elements) then
-         marches%fewer = marches%course(same)
-         marches%fewer_elements = marches%elements
-         marches%fewer_steps = steps_of(plan, same)
-      else if (2*marches%steps == plan%steps) then
-         do i = 0, 2
-            marches%course(i) = marches%course(i + 1)
-         end do
-         first = 3
-      end if
-      marches%steps = plan%steps
-      marches%elements = plan%elements
-      marches%same = same
-      do i = 3, first, -1
-         call run(self, impact, mesh_of(plan, i, plan%elements), marches%course(i), error)
-         ended = marches%course(i)%status == course_ended
-         if (allocated(error) .or. i > 1 .and. .not. ended) return
-      end do
-      ended = .true.
-      if (marches%fewer_steps == steps_of(plan, same)) return
-      if (marches%fewer_steps == 0) marches%fewer_elements = nint(real(plan%elements, wp) &
-         /first_ratio)
-      marches%fewer_steps = steps_of(plan, same)
-      call run(self, impact, mesh_of(plan, same, marches%fewer_elements), marches%fewer, error)
-      if (allocated(error)) return
-      ended = marches%fewer%status == course_ended
-   end subroutine solve_meshes
-
-   !> Steps over the window of one of the marches of a plan
-   elemental function steps_of(plan, march) result(steps)
-      type(plan_t), intent(in) :: plan
-      !> March, 0 (fewest steps) to 3
-      integer, intent(in) :: march
-      integer :: steps
-
-      steps = plan%steps/2**(3 - march)
-   end function steps_of
-
-   !> Mesh of one of the marches of a plan, with steps after the window that see the contact ended
-   pure function mesh_of(plan, march, elements) result(mesh)
-      type(plan_t), intent(in) :: plan
-      !> March, 0 (fewest steps) to 3
-      integer, intent(in) :: march
-      !> Elements of the hats
-      integer, intent(in) :: elements
-      type(mesh_t) :: mesh
-
-      integer, parameter :: after = 4
-
-      associate (steps => steps_of(plan, march))
-         mesh = mesh_t(steps + after, max(least_springs, nint(springs_per_step*real(steps, wp))), &
-            elements + 1, plan%window*(real(steps + after, wp)/real(steps, wp)), plan%radius)
+      half = mesh
+      half%steps = mesh%steps/2
+      call run(self, impact, half, pair%coarse, error)
+      if (allocated(error) .or. pair%coarse%status /= course_ended) return
+      call run(self, impact, mesh, pair%fine, error)
+      if (allocated(error) .or. pair%fine%status /= course_ended) return
+      associate (a => pair%coarse, b => pair%fine)
+         pair%contact_time = limit(a%contact_time, b%contact_time)
+         pair%cor = limit(a%cor(impact), b%cor(impact))
+         one = peak(a%force(0:a%steps), a%dt)
+         two = peak(b%force(0:b%steps), b%dt)
+         pair%coarse_force = one%value
+         pair%fine_force = two%value
+         pair%max_force = limit(one%value, two%value)
+         pair%time_of_max_force = limit(one%time, two%time)
+         one = peak(a%z(0:a%steps), a%dt)
+         two = peak(b%z(0:b%steps), b%dt)
+         pair%depth = limit(one%value, two%value)
+         pair%time_of_depth = limit(one%time, two%time)
       end associate
-   end function mesh_of
+   end subroutine solve_pair
 
    !> Compute the largest force again in a shorter window, as on a light plate the contact lasts
    !> long after it. What comes later does not change it
-   subroutine resolve_peak(self, impact, plan, trajectory, error)
+   subroutine resolve_peak(self, impact, radius, window, trajectory, error)
       type(coupled_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
-      !> The mesh of the impact
-      type(plan_t), intent(in) :: plan
+      !> Radius of the row of springs [m]
+      real(wp), intent(in) :: radius
+      !> Duration of all steps [s]
+      real(wp), intent(in) :: window
       !> The course of the impact, recorded
       type(trajectory_t), intent(inout) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      type(plan_t) :: short
-      type(peak_t) :: top(3)
+      type(peak_t) :: top(2)
       type(course_t) :: course
-      integer :: i
+      type(mesh_t) :: mesh
+      real(wp) :: force(0:1)
+      integer :: level, i
 
-      short = plan
-      short%steps = 2*first_steps
-      short%window = plan%peak_window
-      do i = 1, 3
-         call run(self, impact, mesh_of(short, i, plan%elements), course, error)
-         if (allocated(error) .or. course%status == course_outgrows) return
-         top(i) = peak(course%force(0:course%steps), course%dt)
+      do level = 0, 1
+         mesh = mesh_of(level, impact%face, window, radius)
+         do i = 2, 1, -1
+            call run(self, impact, mesh, course, error)
+            if (allocated(error) .or. course%status == course_outgrows) return
+            top(i) = peak(course%force(0:course%steps), course%dt)
+            mesh%steps = mesh%steps/2
+         end do
+         force(level) = limit(top(1)%value, top(2)%value)
       end do
-      trajectory%max_force = limit(top(2)%value, top(3)%value)
-      trajectory%max_force_error = abs(trajectory%max_force - limit(top(1)%value, top(2)%value)) &
-         + top(3)%noise
-      trajectory%time_of_max_force = limit(top(2)%time, top(3)%time)
+      trajectory%max_force = force(1)
+      trajectory%max_force_error = abs(force(1) - force(0))
+      trajectory%time_of_max_force = limit(top(1)%time, top(2)%time)
    end subroutine resolve_peak
 
    !> Extrapolate to steps of no length
@@ -688,7 +562,7 @@ contains
       ! part of the largest value down to which it is fitted: the top of a sine is within 1e-7
       real(wp), parameter :: high = 0.95_wp
       integer, parameter :: degree = 4, iterations = 8
-      real(wp) :: c(0:degree), products(0:degree, 0:degree), power(0:degree), x, weight, bend, total
+      real(wp) :: c(0:degree), products(0:degree, 0:degree), power(0:degree), x, weight, bend
       integer :: first, middle, last, most, i, info, pivots(degree + 1)
 
       middle = maxloc(value, 1) - 1
@@ -719,33 +593,23 @@ contains
          if (.not. (bend < 0.0_wp .and. abs(x) < 1.0_wp)) return
          x = x - (c(1) + x*(2.0_wp*c(2) + x*(3.0_wp*c(3) + x*4.0_wp*c(4))))/bend
       end do
-      total = 0.0_wp
-      do i = first, last
-         weight = value(i)/peak%value - high
-         power = (real(i - middle, wp)/real(last - first, wp))**[0, 1, 2, 3, 4]
-         peak%noise = peak%noise + weight*(value(i) - sum(c(:most)*power(:most)))**2
-         total = total + weight
-      end do
-      peak%noise = sqrt(peak%noise/total)
       peak%value = c(0) + x*(c(1) + x*(c(2) + x*(c(3) + x*c(4))))
       peak%time = dt*(real(middle, wp) + x*real(last - first, wp))
    end function peak
 
-   !> Record the course of a contact that has ended, extrapolated to steps of no length
-   subroutine record(marches, impact, cor, contact_time, trajectory)
-      type(marches_t), intent(in) :: marches
+   !> Record the course of a contact that has ended, extrapolated at the nodes of the longer steps
+   subroutine record(pair, impact, trajectory)
+      type(pair_t), intent(in) :: pair
       type(impact_t), intent(in) :: impact
-      !> Coefficient of restitution of the sphere [-] and contact time [s]
-      real(wp), intent(in) :: cor, contact_time
       type(trajectory_t), intent(inout) :: trajectory
 
-      type(peak_t) :: one, two
       integer :: i, n
 
-      associate (a => marches%course(2), b => marches%course(3))
-         n = count([(real(i, wp)*b%dt < contact_time, i=1, min(2*(a%steps - 1), b%steps - 1))])
-         call fill(trajectory, impact, b%dt, at_nodes(a%force, b%force(0:n)), &
-            at_nodes(a%z, b%z(0:n)), at_nodes(a%velocity, b%velocity(0:n)), b%radius(0:n))
+      associate (a => pair%coarse, b => pair%fine)
+         n = count([(real(i, wp)*a%dt < pair%contact_time, i=1, min(a%steps - 1, (b%steps - 1)/2))])
+         call fill(trajectory, impact, a%dt, limit(a%force(0:n), b%force(0:2*n:2)), &
+            limit(a%z(0:n), b%z(0:2*n:2)), limit(a%velocity(0:n), b%velocity(0:2*n:2)), &
+            b%radius(0:2*n:2))
          trajectory%steps = a%steps + b%steps
          trajectory%radius(n + 1) = 0.0_wp
          ! the end, with the impulse of the whole contact
@@ -754,40 +618,22 @@ contains
          trajectory%final = n
          associate (end => trajectory%state(:, n))
             end = unset
-            end(col_time) = contact_time
+            end(col_time) = pair%contact_time
             end(col_force) = 0.0_wp
-            end(col_sphere_velocity) = -cor*impact%velocity
-            end(col_impulse) = impact%mass*(impact%free_velocity(contact_time) &
-               + cor*impact%velocity)
+            end(col_sphere_velocity) = -pair%cor*impact%velocity
+            end(col_impulse) = impact%mass*(impact%free_velocity(pair%contact_time) &
+               + pair%cor*impact%velocity)
             end(col_sphere) = limit(a%z(a%steps), b%z(b%steps))
             end(col_indentation) = end(col_sphere)
          end associate
-         one = peak(a%z(0:a%steps), a%dt)
-         two = peak(b%z(0:b%steps), b%dt)
       end associate
       call share_impulse(trajectory)
       trajectory%status = contact_separated
-      trajectory%max_indentation = limit(one%value, two%value)
-      trajectory%time_of_max_indentation = limit(one%time, two%time)
+      trajectory%max_indentation = pair%depth
+      trajectory%time_of_max_indentation = pair%time_of_depth
+      trajectory%max_force = pair%max_force
+      trajectory%time_of_max_force = pair%time_of_max_force
    end subroutine record
-
-   !> Values extrapolated to steps of no length, at the nodes of the shorter steps. What is added
-   !> there between two of the longer steps is the mean of what is added at these
-   pure function at_nodes(coarse, fine) result(value)
-      !> Values with the longer steps, shape (0:), beyond the others, and with the shorter, (0:n)
-      real(wp), intent(in) :: coarse(0:), fine(0:)
-      real(wp) :: value(0:ubound(fine, 1))
-
-      real(wp) :: more(0:ubound(fine, 1))
-      integer :: last
-
-      last = ubound(fine, 1)
-      more(0::2) = limit(coarse(0:last/2), fine(0::2)) - fine(0::2)
-      more(1:last - 1:2) = 0.5_wp*(more(0:last - 2:2) + more(2:last:2))
-      ! the last node may have no longer step beside it
-      if (modulo(last, 2) == 1) more(last) = more(last - 1)
-      value = fine + more
-   end function at_nodes
 
    !> Record the course of a contact that has not ended
    subroutine record_contact(course, impact, trajectory)
@@ -857,13 +703,14 @@ contains
       end associate
    end subroutine share_impulse
 
-   !> Number of steps as text of fixed length, for threads
-   pure function steps_text(steps) result(text)
-      integer, intent(in) :: steps
+   !> Number of steps of a level as text of fixed length, for threads
+   pure function steps_text(level) result(text)
+      !> Level, from 0
+      integer, intent(in) :: level
       !> Text such as 1280
       character(len=4) :: text
 
-      write (text, '(i4)') steps
+      write (text, '(i4)') first_steps*2**level
    end function steps_text
 
 end module vcor_solver_coupled

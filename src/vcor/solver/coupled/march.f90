@@ -524,9 +524,9 @@ contains
    end subroutine end_contact
 
    !> Time by which the waves advance the end of the contact of a round body, over R V/c^2. By
-   !> marches of elastic spheres on elastic half spaces with 80 steps in R V/c^2
-   !> (benchmarks/fine_impacts.f90); the formula is within 0.025 of them, and within 0.008 but
-   !> where the striker has a third of the compliance or less. Of a soft striker the waves are a
+   !> marches of elastic spheres on elastic half spaces with 27 to 90 steps in R V/c^2; the formula
+   !> is within 0.025 of them, within 0.008 but where the striker is stiffer than the plate, and
+   !> within 0.006 for rigid ones. Of a soft striker the waves are a
    !> small perturbation, by the first factor
    elemental function advance(poisson_ratio, striker_share)
       !> Poisson's ratio of the plate [-]
