@@ -9,7 +9,9 @@ module vcor_app_help
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
    use vcor_number, only : interval_text
    use vcor_json, only : array, member, object, strings, words
-   use vcor_words, only : contains_word, nearest_name, suggestion
+   use vcor_solver_features, only : features, methods, of_paper_scheme, reads, refusals, &
+      solves, unread
+   use vcor_words, only : contains_word, list_of_words, longest_name, nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
       statuses
    use vcor_text, only : integer_text, printable
@@ -21,6 +23,8 @@ module vcor_app_help
 
    !> End of a line
    character(len=*), parameter :: nl = new_line("a")
+   !> What the program does not have, of which users ask
+   character(len=*), parameter :: not_there = "tangential rolling oblique"
    !> Longest line of a page
    integer, parameter :: width = 86
    !> Column of the meaning of an option, a key or a column
@@ -71,6 +75,16 @@ contains
          if (text /= "") return
          if (missing_package(topic) /= "") then
             call raise(error, error_usage, missing_package(topic))
+            return
+         end if
+         if (contains_word(not_there, topic)) then
+            call raise(error, error_usage, "no help on '"//printable(topic)//"': vcor has normal " &
+               //"impacts, without friction and spin")
+            return
+         end if
+         if (topic == "hollow") then
+            call raise(error, error_usage, "no help on 'hollow': a hollow sphere has its mass in " &
+               //"sphere.mass; its contact is that of a solid one")
             return
          end if
          ! too many words to list, but they can be searched for a similar one
@@ -416,9 +430,68 @@ contains
          list = list//object("""code"": "//integer_text(i)//", "//member("name", code_names(i)) &
             //member("meaning", code_meanings(i)))
       end do
-      text = object(text//array(list, "exit_codes"))
+      text = object(text//array(list, "exit_codes")//methods_and_features())
       text = text(:len(text) - 2)//nl
    end function help_json
+
+   !> The table of methods and features as members of a JSON object
+   function methods_and_features() result(text)
+      character(len=:), allocatable :: text
+
+      character(len=longest_name), allocatable :: names(:)
+      character(len=:), allocatable :: list, known
+      integer :: i, j, other
+
+      text = words("methods", names_of([(.true., i=1, size(methods))]))
+      list = ""
+      do i = size(methods) + 1, size(features)
+         ! the scheme is the method paper
+         if (i == of_paper_scheme) cycle
+         list = list//object(member("meaning", features(i)%meaning) &
+            //member("keys", features(i)%keys) &
+            //words("methods", names_of([(solves(j, i), j=1, size(methods))])))
+      end do
+      text = text//array(list, "features")
+      list = ""
+      known = ""
+      do i = 1, size(unread)
+         allocate (names, source=list_of_words(trim(unread(i)%keys)))
+         do j = 1, size(names)
+            if (contains_word(known, names(j))) cycle
+            known = known//" "//trim(names(j))
+            list = list//object(member("key", trim(unread(i)%group)//"."//trim(names(j))) &
+               //words("methods", names_of([(reads(other, trim(unread(i)%group), &
+               trim(names(j))), other=1, size(methods))])))
+         end do
+         deallocate (names)
+      end do
+      text = text//array(list, "method_keys")
+      list = ""
+      do i = 1, size(refusals)
+         do j = 1, size(refusals(i)%by)
+            other = refusals(i)%by(j)
+            if (other <= size(methods)) cycle
+            list = list//object(member("one", features(other)%keys) &
+               //member("other", features(refusals(i)%feature)%keys) &
+               //member("reason", refusals(i)%message))
+         end do
+      end do
+      text = text//array(list, "exclusions")
+   end function methods_and_features
+
+   !> Names of some methods, separated by blanks
+   pure function names_of(chosen) result(names)
+      !> Shape (size(methods))
+      logical, intent(in) :: chosen(:)
+      character(len=:), allocatable :: names
+
+      integer :: i
+
+      names = ""
+      do i = 1, size(methods)
+         if (chosen(i)) names = trim(adjustl(names//" "//methods(i)))
+      end do
+   end function names_of
 
    !> Usage, summary, examples and options of a command as a JSON object
    function command_object(command) result(text)

@@ -322,9 +322,38 @@ def man_page(document, name, file, about):
     return "\n".join(lines) + "\n"
 
 
+def methods(document):
+    """The table of what each method solves, and what excludes each other, as Markdown."""
+    names = document["methods"]
+    head = ["an impact with", "keys", *(f"`{name}`" for name in names)]
+    rows = [
+        [escaped(one["meaning"]), code(re.split(", (?=\\w+ =)", one["keys"])),
+         *("yes" if name in one["methods"] else "no" for name in names)]
+        for one in document["features"]
+    ]
+    rows += [
+        ["the key", f"`{one['key']}`", *("read" if name in one["methods"] else "not read" for name in names)]
+        for one in document["method_keys"]
+    ]
+    pairs = []
+    for one in document["exclusions"]:
+        line = item(f"{one['one']}` and `{one['other']}", one["reason"])
+        pairs += wrapped(line, MARKDOWN_WIDTH, "  ")
+    return table(head, rows) + "\n\nFeatures that exclude each other:\n\n" + "\n".join(pairs)
+
+
+def with_methods(document, name):
+    """A page written by hand in which the table of methods is made here."""
+    text = (ROOT / name).read_text(encoding="utf-8")
+    made = "<!-- made by scripts/manual.py -->"
+    before, _, rest = text.partition(f"{made}\n")
+    _, _, after = rest.partition("<!-- end -->")
+    return f"{before}{made}\n{methods(document)}\n<!-- end -->{after}"
+
+
 def pages(document):
     """All pages: text by path."""
-    found = {}
+    found = {"docs/which_model.md": with_methods(document, "docs/which_model.md")}
     for name, file, about in PAGES:
         found[f"docs/{name}.md"] = markdown(document, name)
         found[f"man/{file}"] = man_page(document, name, file, about)

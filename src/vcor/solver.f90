@@ -8,9 +8,11 @@ module vcor_solver
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_solver_coupled, only : coupled_t, new_coupled
    use vcor_solver_direct_product, only : new_product, product_t
+   use vcor_solver_features, only : coupled, direct, features, method_for, method_in_use, &
+      refuse_features
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
-   use vcor_solver_type, only : default_accuracy, method_for, solve_by => solve_impact, &
+   use vcor_solver_type, only : default_accuracy, features_of, solve_by => solve_impact, &
       solver_settings_t, solver_t
    implicit none
    private
@@ -18,12 +20,11 @@ module vcor_solver
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy, settle
 
-   !> The method `auto`: the coupled contact for waves in a plate of any thickness; product
-   !> integration for the paper's variants, a frozen plate, the second Volterra term and going on
-   !> after the separation; otherwise internal variables, and product integration if they fail. They
-   !> fail if no sum of exponentials represents the kernel: for a table whose data begin long after
-   !> the end of the contact, for some pairs, and for exponents near a limit; and if a receding
-   !> contact grows again
+   !> The method `auto`: that which the table of `vcor_solver_features` gives for the impact; where
+   !> it is internal variables, also product integration if they fail, or if a structure strikes
+   !> again after the first separation. They fail if no sum of exponentials represents the kernel:
+   !> for a table whose data begin long after the end of the contact, for some pairs, and for
+   !> exponents near a limit; and if a receding contact grows again
    type, extends(solver_t) :: auto_t
       !> Method for waves in a plate of any thickness
       type(coupled_t), allocatable :: coupled
@@ -59,87 +60,21 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      logical :: two_terms, is_product
+      logical :: has(size(features))
+      integer :: method
 
       call check_numbers(settings, error)
       if (allocated(error)) return
-      two_terms = abs(settings%second_coefficient) > 0.0_wp
-      is_product = settings%scheme == 'product'
-      if (impact%face%has_waves .and. any(settings%method == ['ive   ', 'direct'])) then
-         call refuse("waves = 'body' are solved by method = 'coupled' only", 'method waves')
-      else if (settings%method == 'coupled' .or. impact%face%has_waves) then
-         call check_coupled(settings, impact, error)
-      else if (settings%method == 'ive' .and. .not. is_product) then
-         call refuse("adams_bashforth is a scheme of method = 'direct'", 'scheme method')
-      else if (settings%method == 'ive' .and. two_terms) then
-         call refuse("the second term of the Volterra series is solved by method = 'direct' only", &
-            'volterra_order volterra_coefficient method')
-      else if (settings%method == 'ive' .and. settings%ghost) then
-         call refuse("only method = 'direct' continues after the separation", &
-            'continue_after_separation method')
-      else if (settings%method == 'ive' .and. impact%plate%frozen()) then
-         call refuse("waves = 'frozen' are solved by method = 'direct' only", 'waves method')
-      else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
-         call refuse('the second term of the Volterra series has no meaning with a viscosity, ' &
-            //'whose kernel is a delta function', 'volterra_order volterra_coefficient viscosity')
-      else if (impact%kernel_viscosity() > 0.0_wp .and. impact%plate%frozen()) then
-         call refuse("a frozen plate is made for the paper's contacts, without a viscosity; use " &
-            //"waves = 'relaxing'", 'waves viscosity')
-      else if (impact%law%receding .and. two_terms) then
-         call refuse('receding contact is exact for a force that is linear in u = s^1.5: the ' &
-            //'second term of the Volterra series has no meaning in it', 'law volterra_order')
-      else if (impact%law%receding .and. .not. is_product) then
-         call refuse('adams_bashforth sums the force over all the past, receding contact does ' &
-            //"not; use method = 'ive', or 'direct' with scheme = 'product'", 'law scheme')
-      else if (impact%law%receding .and. settings%ghost) then
-         call refuse('nothing is left of a receding contact at separation: continuing has no ' &
-            //'meaning', 'law continue_after_separation')
-      else if (impact%gravity > 0.0_wp .and. .not. is_product) then
-         call refuse("adams_bashforth marches the paper's wave equation, without a weight; use " &
-            //"method = 'ive', or 'direct' with scheme = 'product'", 'gravity scheme')
-      else if (impact%plate%hereditary() .and. .not. is_product) then
-         call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
-            //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &
-            'waves scheme')
-      end if
-
-   contains
-
-      !> Raise the error
-      subroutine refuse(message, about)
-         !> Reason
-         character(len=*), intent(in) :: message
-         !> Names of the settings
-         character(len=*), intent(in) :: about
-
-         call raise(error, error_input, message, about)
-      end subroutine refuse
-   end subroutine check_settings
-
-   !> Check that the coupled contact can be solved with the given settings
-   subroutine check_coupled(settings, impact, error)
-      type(solver_settings_t), intent(in) :: settings
-      type(impact_t), intent(in) :: impact
-      !> Error of code `error_input`
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. impact%face%is_built()) then
+      has = features_of(settings, impact)
+      method = method_in_use(settings%method, settings%scheme, has)
+      has(method) = .true.
+      if (method == coupled .and. .not. impact%face%is_built()) then
          call raise(error, error_input, "method = 'coupled' needs the face of the impact: " &
             //'new_face builds it', 'method')
-      else if (impact%plate%moves()) then
-         call raise(error, error_input, "method = 'coupled' solves waves = 'body' or 'none', not " &
-            //'those of a thin plate', 'method waves')
-      else if (abs(settings%second_coefficient) > 0.0_wp) then
-         call raise(error, error_input, "method = 'coupled' is linear theory, a second term of " &
-            //'the Volterra series is not', 'volterra_order method waves')
-      else if (settings%scheme /= 'product') then
-         call raise(error, error_input, "adams_bashforth is a scheme of method = 'direct'", &
-            'scheme method waves')
-      else if (settings%ghost) then
-         call raise(error, error_input, 'nothing is left of a coupled contact at separation: ' &
-            //'continuing has no meaning', 'continue_after_separation method waves')
+      else
+         call refuse_features(has, error)
       end if
-   end subroutine check_coupled
+   end subroutine check_settings
 
    !> Check the numbers among the settings
    subroutine check_numbers(settings, error)
@@ -286,13 +221,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(error_t), allocatable :: failure
+      integer :: method
 
-      if (impact%face%has_waves) then
+      method = method_in_use('auto', 'product', features_of(self%settings, impact))
+      if (method == coupled) then
          call self%coupled%solve(impact, trajectory, error)
          return
-      end if
-      if (impact%plate%frozen() .or. self%settings%ghost &
-          .or. abs(self%settings%second_coefficient) > 0.0_wp) then
+      else if (method == direct) then
          call self%product%solve(impact, trajectory, error)
          return
       end if
@@ -300,7 +235,8 @@ contains
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
-      else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
+      else if (trajectory%status /= contact_separated &
+               .or. .not. (trajectory%misses_by_far() .or. trajectory%returns)) then
          return
       end if
       call self%product%solve(impact, trajectory, error)

@@ -4,7 +4,7 @@ import re
 
 import pytest
 from cases import SLS, edit
-from program import INPUT, PAPER, ROOT
+from program import INPUT, NUMERICAL, PAPER, ROOT
 
 EXACT = ["--set", "contact.law=receding", "--set", "plate.waves=hereditary"]
 
@@ -122,3 +122,81 @@ def test_hereditary_plate_next_to_a_maxwell_element(vcor, exponent):
     assert float(ive["cor_error"]) <= 1e-8
     difference = abs(float(ive["cor"]) - float(direct["cor"]))
     assert difference <= 3 * (float(ive["cor_error"]) + float(direct["cor_error"]))
+
+
+THICKNESSES = [["plate.half_thickness=0.02"], ["plate.thickness=0.04"]]
+KINDS = {
+    "free": ["plate.waves=none"],
+    "bonded": ["plate.base=bonded", "plate.waves=none"],
+    "thin": ["plate.waves=hereditary"],
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("command", ["run", "verify", "sweep"])
+def test_equal_thicknesses_have_equal_exact_mechanics(vcor, kind, command):
+    """What the screen says of exact mechanics does not depend on the key of the thickness."""
+    screens = []
+    for settings in THICKNESSES:
+        words = [word for setting in KINDS[kind] + settings for word in ("--set", setting)]
+        text = SLS if command != "sweep" else SLS + "&sweep parameter = 'impact.velocity', values = 2, 5 /\n"
+        vcor.write(text)
+        out = vcor.succeeds("verify" if command == "verify" else "run", "case.nml", *words)
+        screens.append([line for line in out.splitlines() if "written" not in line])
+    assert screens[0] == screens[1]
+    assert any("exact" in line or "half_space" in line for line in screens[0])
+
+
+def test_swept_thicknesses_have_equal_exact_mechanics(vcor):
+    screens = []
+    for key, values in (("half_thickness", "0.01, 0.02"), ("thickness", "0.02, 0.04")):
+        vcor.write(f"{SLS}&sweep parameter = 'plate.{key}', values = {values} /\n")
+        out = vcor.succeeds("run", "case.nml", "--set", "plate.waves=none")
+        screens.append(re.findall(r"exact (\S+)", out))
+    assert len(screens[0]) >= 2 and screens[0] == screens[1]
+
+
+BEADS = """
+    &impact velocity = 1 /
+    &sphere radius = 2.995e-3, mass = 7.4215e-5, material = 'acetate' /
+    &plate material = 'acetate', surface_radius = {radius} WAVES /
+    &contact mechanics = 'exact' /
+    &material name = 'acetate', model = 'prony', density = 1319, poisson_ratio = 0.28,
+       equilibrium_modulus = 3.2e9, viscosity = 3870 /
+"""
+
+
+def test_two_spheres_are_no_half_space(vcor):
+    """Exact mechanics leaves waves = 'none' with a second sphere, says so, and verify has no waves."""
+    text = BEADS.format(radius="2.995e-3")
+    vcor.write(text.replace("WAVES", ""))
+    done = vcor("run", "case.nml", "--print", "cor_sphere")
+    assert "two spheres are no half space" in done.err
+    vcor.write(text.replace("WAVES", ", waves = 'none'"), "none.nml")
+    none = vcor("run", "none.nml", "--print", "cor_sphere")
+    assert (none.out, "half space" in none.err) == (done.out, False)
+    assert "waves = 'none'" in vcor("check", "case.nml").out
+    for name in ("case.nml", "none.nml"):
+        assert {row[0] for row in models(vcor("verify", name).out)} == {"none"}
+    # the paper's mechanics: no solution of a half space beside that of two spheres
+    out = vcor.succeeds("run", "none.nml", "--set", "contact.mechanics=paper")
+    assert "waves body" not in out
+
+
+def test_exact_mechanics_of_a_seat(vcor):
+    """A concave surface is that of a wide body, whose waves are solved; so is a radius set to 0."""
+    vcor.write(BEADS.format(radius="-2e-2").replace("WAVES", ""))
+    assert "waves = 'body'" in vcor.succeeds("check", "case.nml")
+    vcor.write(BEADS.format(radius="2e-2").replace("WAVES", ""))
+    checked = vcor.succeeds("check", "case.nml", "--set", "plate.surface_radius=0")
+    assert "waves = 'body'" in checked
+
+
+def test_sweep_from_a_seat_to_a_second_sphere(vcor):
+    text = BEADS.format(radius="-2e-2")
+    sweep = "&sweep parameter = 'plate.surface_radius', values = -2e-2, 2e-2 /\n"
+    vcor.write(text.replace("WAVES", "") + sweep)
+    done = vcor("run", "case.nml")
+    assert done.code == NUMERICAL and "surface_radius" in done.err and "one sign" in done.err
+    vcor.write(text.replace("WAVES", ", waves = 'none'") + sweep)
+    assert vcor("run", "case.nml").code == 0

@@ -3,7 +3,7 @@ program test_solver
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : waves_none, waves_relaxing
+   use vcor_impact_target, only : waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
@@ -13,6 +13,7 @@ program test_solver
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_sls, prony_t
    use vcor_solver, only : method_for, new_solver, solver_settings_t, solver_t
+   use vcor_solver_features, only : features, of_body, of_paper_scheme, of_second_term
    use vcor_solver_ive, only : ive_t
    use vcor_solver_direct_product, only : product_t
    use vcor_test, only : check, check_close, check_relative, check_text, finish, &
@@ -376,7 +377,7 @@ contains
       call check_close(maxval(abs(problem%mass*(problem%velocity &
          - state(col_sphere_velocity, :)) - state(col_impulse, :)))/state(col_impulse, n), &
          0.0_wp, rounding, name//": m (v0 - z') = I")
-      call check_close(maxval(abs(problem%plate%alpha(state(col_time, :)) &
+      call check_close(maxval(abs(problem%target%alpha(state(col_time, :)) &
          *state(col_impulse, :) - state(col_plate, :)))/largest, 0.0_wp, rounding, &
          name//": U = alpha I")
       call check(all(state(col_force, 1:n - 1) > 0.0_wp), name//": the force presses")
@@ -476,16 +477,21 @@ contains
       class(solver_t), allocatable :: solver
       type(outcome_t) :: outcome, direct
       type(error_t), allocatable :: error
+      logical :: has(size(features))
 
       ! what the settings are by themselves
-      call check_text(trim(method_for("auto", "product", .false., .false.)), "ive", "auto is ive")
-      call check_text(trim(method_for("direct", "product", .false., .false.)), "direct", &
+      has = .false.
+      call check_text(trim(method_for("auto", "product", has)), "ive", "auto is ive")
+      call check_text(trim(method_for("direct", "product", has)), "direct", &
          & "what is asked for is taken")
-      call check_text(trim(method_for("auto", "adams_bashforth", .false., .false.)), "direct", &
-         & "auto is direct for the scheme of the paper")
-      call check_text(trim(method_for("auto", "product", .false., .true.)), "direct", &
+      has(of_second_term) = .true.
+      call check_text(trim(method_for("auto", "product", has)), "direct", &
          & "auto is direct for the variants of the paper")
-      call check_text(trim(method_for("auto", "product", .true., .false.)), "coupled", &
+      has(of_paper_scheme) = .true.
+      call check_text(trim(method_for("auto", "adams_bashforth", has)), "direct", &
+         & "auto is direct for the scheme of the paper")
+      has(of_body) = .true.
+      call check_text(trim(method_for("auto", "product", has)), "coupled", &
          & "auto is coupled for waves in a plate of any thickness")
       call new_solver(solver, settings, singular, error)
       call success(error, "auto solves a power law")

@@ -7,18 +7,20 @@ module vcor_case_checks
    use vcor_case_address, only : material_names, swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, key_row, &
-      keys_of, last_row, list_key, real_key, row_for_model, wanted
+      keys_of, last_row, list_key, real_key, row_for_model, text_key, wanted
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : value_text
    use vcor_case_body, only : material_of_case
-   use vcor_case_problem, only : has_body, method_of, why_no_pair
+   use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_values, only : range_message
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
    use vcor_material_shift, only : coldest, key_laws, keys_needed, shift_keys
    use vcor_number, only : real_text
+   use vcor_solver_features, only : coupled, features, of_body, of_frozen_plate, of_thin_plate, &
+      own_rules, solves, unread
    use vcor_text, only : canonical_name, printable, quoted, shortened
-   use vcor_words, only : contains_word, join_words, suggestion
+   use vcor_words, only : contains_word, join_words, list_of_words, longest_name, suggestion
    implicit none
    private
 
@@ -230,51 +232,80 @@ contains
       end do
    end subroutine check_temperature
 
-   !> Check that keys do not contradict the coupled contact: it recedes, its pair is in series, it
-   !> is linear theory and takes its own steps. Defaults, as a completed case has them, are no
-   !> contradiction
+   !> Check that keys do not contradict the coupled contact: its own law and pair, and what it does
+   !> not read. Defaults, as a completed case has them, are no contradiction
    subroutine check_coupled(self, error)
       !> A case whose bodies have materials
       type(case_t), intent(in) :: self
       type(error_t), allocatable, intent(out) :: error
 
-      !> Keys, and the value that each may have, if any
-      character(len=*), parameter :: keys(3, 8) = reshape([character(len=25) :: &
-         'contact', 'law', "'receding'", 'contact', 'pair', "'series'", &
-         'solver', 'scheme', "'product'", 'solver', 'form', "'a'", &
-         'solver', 'quadrature', "'trapezoid'", 'solver', 'volterra_order', '1', &
-         'solver', 'continue_after_separation', '.false.', 'solver', 'time_step', ''], [3, 8])
-      character(len=:), allocatable :: allowed, cause, found, method, waves
-      type(address_t) :: address
-      integer :: i
+      character(len=longest_name), allocatable :: keys(:)
+      character(len=:), allocatable :: cause, method, waves
+      logical :: has(size(features))
+      integer :: i, j
 
-      if (method_of(self) /= 'coupled' .and. .not. has_body(self)) return
+      has = features_of_case(self)
+      if (place_of_method(self) /= coupled .and. .not. has(of_body)) return
       call self%get('solver', 'method', method)
       call self%get('plate', 'waves', waves)
       cause = "solver.method = 'coupled'"
-      if (has_body(self)) cause = "plate.waves = 'body'"
-      if (all(method /= ['auto   ', 'coupled'])) then
+      if (has(of_body)) cause = "plate.waves = 'body'"
+      if (place_of_method(self) /= coupled) then
          call self%refuse('solver', 'method', 1, "found method = '"//method//"' with "//cause &
             //", expected 'auto' or 'coupled', which alone solves it", error)
-      else if (all(waves /= ['none', 'body']) .and. self%model(find_group('material'), &
-               self%material_of('plate')) /= 'rigid') then
+      else if (any([(has(i) .and. .not. solves(coupled, i), &
+               i=of_thin_plate, of_frozen_plate)])) then
          call self%refuse('plate', 'waves', 1, "found waves = '"//waves//"' with "//cause &
             //", expected 'body' or 'none'", error)
       end if
-      do i = 1, size(keys, 2)
-         if (allocated(error)) return
-         address = self%address(trim(keys(1, i)), trim(keys(2, i)))
-         if (.not. self%given(trim(keys(1, i)), trim(keys(2, i)))) cycle
+      do i = 1, size(own_rules)
          ! a flat punch does not recede, and the pair of a rigid body is none
-         if (keys(2, i) == 'law' .and. self%model(find_group('sphere'), 1) == 'punch') cycle
-         if (keys(2, i) == 'pair' .and. why_no_pair(self) /= '') cycle
-         found = value_text(catalogue(address%row), self%entry(address))
-         if (found == keys(3, i)) cycle
-         allowed = trim(keys(3, i))
-         if (allowed /= '') allowed = allowed//' or '
-         call self%refuse(trim(keys(1, i)), trim(keys(2, i)), 1, 'found '//trim(keys(2, i))//' = ' &
-            //found//' with '//cause//', expected '//allowed//'no such key', error)
+         if (own_rules(i)%key == 'law' .and. self%model(find_group('sphere'), 1) == 'punch') cycle
+         if (own_rules(i)%key == 'pair' .and. why_no_pair(self) /= '') cycle
+         if (own_rules(i)%method == coupled) call demand(trim(own_rules(i)%group), &
+            trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'")
       end do
+      do i = 1, size(unread)
+         if (.not. (unread(i)%contradicts .and. any(unread(i)%by == coupled))) cycle
+         keys = list_of_words(trim(unread(i)%keys))
+         do j = 1, size(keys)
+            call demand(trim(unread(i)%group), trim(keys(j)), &
+               default_text(find_key(trim(unread(i)%group), trim(keys(j)))))
+         end do
+      end do
+
+   contains
+
+      !> Refuse a key that is given with another value
+      subroutine demand(group, key, allowed)
+         character(len=*), intent(in) :: group, key
+         !> The value that it may have, as in a case; empty if there is none
+         character(len=*), intent(in) :: allowed
+
+         character(len=:), allocatable :: expected, found
+         type(address_t) :: address
+
+         if (allocated(error)) return
+         if (.not. self%given(group, key)) return
+         address = self%address(group, key)
+         found = value_text(catalogue(address%row), self%entry(address))
+         if (found == allowed) return
+         expected = allowed
+         if (expected /= '') expected = expected//' or '
+         call self%refuse(group, key, 1, 'found '//key//' = '//found//' with '//cause &
+            //', expected '//expected//'no such key', error)
+      end subroutine demand
+
+      !> Default of a key, as in a case
+      pure function default_text(row) result(text)
+         !> Its row in the catalogue
+         integer, intent(in) :: row
+         !> Empty if there is none
+         character(len=:), allocatable :: text
+
+         text = trim(catalogue(row)%default)
+         if (text /= '' .and. catalogue(row)%value_kind == text_key) text = "'"//text//"'"
+      end function default_text
    end subroutine check_coupled
 
    !> Check that the material of a body exists

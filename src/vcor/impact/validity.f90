@@ -222,9 +222,9 @@ contains
       ! neither a rigid plate nor a dashpot has waves
       if (.not. storage > 0.0_wp) return
       wave_number = 0.0_wp
-      if ((impact%plate%moves() .or. around%has_body) &
+      if ((impact%target%moves() .or. around%has_body) &
           .and. .not. ieee_is_nan(around%thickness)) then
-         if (impact%plate%moves()) outcome%deflection_ratio = &
+         if (impact%target%moves()) outcome%deflection_ratio = &
             maxval(abs(trajectory%state(col_plate, 0:trajectory%last)))/around%thickness
          wave_number = sqrt(frequency/around%thickness*sqrt(12.0_wp*plate%density() &
             /(storage*plate%plane_strain_factor())))
@@ -241,7 +241,8 @@ contains
       if (around%is_sphere .or. around%on_base) return
       ! Zener's alpha; W = alpha int F^2 dt, of a half sine alpha F^2 t0/2, as the part of a motion
       ! that the loss itself slows down
-      if (.not. (impact%plate%moves() .or. around%has_body .or. ieee_is_nan(around%thickness))) then
+      if (.not. (impact%target%moves() .or. around%has_body &
+          .or. ieee_is_nan(around%thickness))) then
          alpha = sqrt(3.0_wp*plate%density()/(storage*plate%plane_strain_factor())) &
             /(4.0_wp*plate%density()*around%thickness**2)
          outcome%bending_loss = 1.0_wp - exp(-alpha*outcome%max_force/outcome%initial_energy &

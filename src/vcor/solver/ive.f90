@@ -5,17 +5,18 @@
 !> stages; the error of every result is the difference of the two. Where one exceeds the accuracy,
 !> the march is repeated with a lower tolerance.
 module vcor_solver_ive
-   use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_impulse, col_time, col_velocity, contact_separated, &
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t, new_bridge, new_rule, rule_t
+   use vcor_solver_features, only : ive, refuse_features
    use vcor_solver_ive_course, only : of_cor, of_cor_sphere, of_force, of_time
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_march, only : follow
-   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
+   use vcor_solver_type, only : default_accuracy, features_of, solver_settings_t, solver_t
    use vcor_tuning, only : ive_loosest, sum_share, sum_window
    implicit none
    private
@@ -53,12 +54,8 @@ contains
       type(solver_settings_t), intent(in) :: settings
       type(error_t), allocatable, intent(out) :: error
 
-      if (abs(settings%second_coefficient) > 0.0_wp .or. settings%ghost) then
-         call raise(error, error_input, "a second Volterra term and going on after the " &
-            //"separation are solved by method = 'direct' only", &
-            'volterra_order continue_after_separation')
-         return
-      end if
+      call refuse_features(by_ive(features_of(settings)), error)
+      if (allocated(error)) return
       self%settings = settings
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('ive')
       self%accuracy = min(self%settings%accuracy, ive_loosest)
@@ -66,6 +63,16 @@ contains
       if (.not. allocated(error)) call new_rule(self%rules(2), width - 1, error)
       if (.not. allocated(error)) call new_bridge(self%bridge, self%rules(1), self%rules(2))
    end subroutine new_ive
+
+   !> Features of an impact that is solved by this method
+   pure function by_ive(features) result(has)
+      !> Those of impact and settings, shape (n)
+      logical, intent(in) :: features(:)
+      logical :: has(size(features))
+
+      has = features
+      has(ive) = .true.
+   end function by_ive
 
    !> Compute the course of an impact: march, and again while an error exceeds the accuracy, with a
    !> lower tolerance or a better sum of exponentials, whichever it is that errs; the best counts.
@@ -84,14 +91,11 @@ contains
       real(wp) :: worst, last
       integer :: trial
 
-      if (impact%plate%frozen()) then
-         call raise(error, error_input, "waves = 'frozen' are solved by method = 'direct' only", &
-            'waves method')
-         return
-      end if
+      call refuse_features(by_ive(features_of(self%settings, impact)), error)
+      if (allocated(error)) return
       effort%window = sum_window*impact%law%contact_time*impact%time_scale()
       call attempt(self, impact, effort, trajectory, worst, error)
-      if (allocated(error)) return
+      if (allocated(error) .or. trajectory%returns) return
       do trial = 2, most
          if (.not. worst > self%accuracy) return
          call attempt(self, impact, effort, other, last, failure)
@@ -127,8 +131,8 @@ contains
          if (allocated(error)) return
          ! an exact sum holds for all times
          window = effort%window
-         if (.not. (sums%contact%error > 0.0_wp .or. impact%plate%hereditary())) &
-            window = huge(1.0_wp)
+         if (.not. (sums%contact%error > 0.0_wp .or. impact%target%hereditary() &
+             .or. impact%target%structure%is_viscoelastic())) window = huge(1.0_wp)
          call follow(self%rules, self%bridge, impact, sums, self%accuracy, effort%march, &
             time_scale, end_time, window, trajectory, of_march, complete, error)
          if (complete .or. allocated(error)) exit
@@ -184,8 +188,12 @@ contains
             //'of this contact')
          return
       end if
-      if (.not. impact%plate%hereditary()) return
-      call impact%plate%response(window, sum_share*accuracy, sums%plate)
+      if (impact%target%structure%exists()) then
+         allocate (sums%vibration)
+         call impact%target%structure%expand(window, sum_share*accuracy, sums%vibration, error)
+      end if
+      if (.not. impact%target%hereditary()) return
+      call impact%target%response(window, sum_share*accuracy, sums%plate)
       if (.not. sums%plate%error < 1.0_wp) call raise(error, error_numerical, 'no sum of ' &
          //'exponentials represents the memory of this plate: use another plate.waves')
    end subroutine find_sums
@@ -223,9 +231,10 @@ contains
       end if
       associate (last => trajectory%state(:, trajectory%last))
          of_plate = 0.0_wp
-         if (impact%plate%hereditary()) of_plate = max(sums%plate%error, &
-            abs(sums%plate%integral(last(col_time))/(impact%plate%alpha(0.0_wp) &
-            + impact%plate%memory_integral(last(col_time))) - 1.0_wp))
+         if (impact%target%hereditary()) of_plate = max(sums%plate%error, &
+            abs(sums%plate%integral(last(col_time))/(impact%target%alpha(0.0_wp) &
+            + impact%target%memory_integral(last(col_time))) - 1.0_wp))
+         if (allocated(sums%vibration)) of_plate = sums%vibration%error
          of_velocity = of_kernel + of_plate
          errors(of_cor:of_cor_sphere) = of_velocity
          errors(of_time) = of_velocity*last(col_time)*impact%velocity/abs(last(col_velocity))

@@ -6,11 +6,14 @@ module vcor_solver_type
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : pi, wp
+   use vcor_solver_features, only : features, of_body, of_frozen_plate, of_ghost, of_gravity, &
+      of_hereditary_plate, of_layer, of_paper_scheme, of_receding, of_second_term, of_thin_plate, &
+      of_viscosity
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, method_for, light_plate, &
-      as_text
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, features_of, &
+      light_plate, as_text
 
    !> Length of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')
@@ -33,6 +36,8 @@ module vcor_solver_type
       real(wp) :: accuracy = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series, Eq. (10) [m^-1.5]; 0: without it
       real(wp) :: second_coefficient = 0.0_wp
+      !> End at the first separation from a structure, whether or not it is the last
+      logical :: first_contact = .false.
       !> Continue after the separation, to `end_time` or to twice the contact time
       logical :: ghost = .false.
    end type solver_settings_t
@@ -61,25 +66,27 @@ module vcor_solver_type
 
 contains
 
-   !> Method in use: `auto` is coupled for waves in a plate of any thickness, direct for the paper's
-   !> schemes and variants, and ive otherwise, which falls back to direct on failure
-   pure function method_for(method, scheme, has_body, has_variant) result(name)
-      !> Method requested: auto, ive, direct or coupled
-      character(len=*), intent(in) :: method
-      !> Scheme of the direct method requested
-      character(len=*), intent(in) :: scheme
-      !> Whether the impact has waves in a plate of any thickness
-      logical, intent(in) :: has_body
-      !> Whether it has a frozen plate or a second Volterra term, or goes on after the separation
-      logical, intent(in) :: has_variant
-      !> ive, direct or coupled
-      character(len=7) :: name
+   !> Features of an impact and of the settings of its solution, without the method
+   pure function features_of(settings, impact) result(has)
+      type(solver_settings_t), intent(in) :: settings
+      !> Absent: those of the settings only
+      type(impact_t), intent(in), optional :: impact
+      logical :: has(size(features))
 
-      name = method
-      if (method /= 'auto') return
-      name = merge('ive   ', 'direct', scheme == 'product' .and. .not. has_variant)
-      if (has_body) name = 'coupled'
-   end function method_for
+      has = .false.
+      has(of_second_term) = abs(settings%second_coefficient) > 0.0_wp
+      has(of_ghost) = settings%ghost
+      has(of_paper_scheme) = settings%scheme /= 'product'
+      if (.not. present(impact)) return
+      has(of_body) = impact%face%has_waves
+      has(of_thin_plate) = impact%target%moves()
+      has(of_hereditary_plate) = impact%target%hereditary()
+      has(of_frozen_plate) = impact%target%frozen()
+      has(of_layer) = impact%law%is_of_layer()
+      has(of_receding) = impact%law%receding
+      has(of_viscosity) = impact%kernel_viscosity() > 0.0_wp
+      has(of_gravity) = impact%gravity > 0.0_wp
+   end function features_of
 
    !> Accuracy of the coefficient of restitution if none is requested
    pure function default_accuracy(method) result(accuracy)
@@ -124,6 +131,11 @@ contains
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
             call outcome%settle(impact)
          if (all(outcome%status /= [contact_separated, contact_resting])) return
+         if (trajectory%returns .and. .not. solver%settings%first_contact) then
+            call raise(error, error_numerical, 'the structure strikes the sphere again after the ' &
+               //"first separation, which method = 'ive' does not follow: use method = 'auto'")
+            return
+         end if
          if (outcome%max_indentation > impact%law%deepest()) then
             write (depth, '(es9.2)') [outcome%max_indentation, impact%law%deepest()]
             call raise(error, error_numerical, 'the contact becomes wider than its law is known ' &

@@ -11,7 +11,8 @@ module vcor_verify_methods
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
       ieee_value
    use vcor_case_case, only : case_t
-   use vcor_case_problem, only : method_of, problem_t
+   use vcor_case_mechanics, only : method_of
+   use vcor_case_problem, only : problem_t
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t
@@ -135,7 +136,7 @@ contains
       associate (first => comparison%attempts(attempt_first), &
                  own => comparison%attempts(attempt_case), impact => problem%impact)
          settings = settings_of(case, 'ive')
-         is_variant = impact%plate%frozen() .or. abs(settings%second_coefficient) > 0.0_wp
+         is_variant = impact%target%frozen() .or. abs(settings%second_coefficient) > 0.0_wp
          if (.not. is_variant) call make_attempt(first, settings, impact, error)
          if (allocated(error)) return
          if (is_variant .or. method == 'auto' .and. allocated(first%failure)) then

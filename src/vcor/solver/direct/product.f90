@@ -23,6 +23,7 @@ module vcor_solver_direct_product
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_convolution, only : lengthen, second_term_t
+   use vcor_solver_direct_contacts, only : solve_contacts
    use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, find_peaks, &
       parabola, set_shares
    use vcor_solver_direct_motion, only : motion_t
@@ -98,6 +99,10 @@ contains
       integer :: level, room
       logical :: crude
 
+      if (impact%target%structure%exists()) then
+         call solve_contacts(self%settings, impact, trajectory, error)
+         return
+      end if
       associate (time_step => self%settings%time_step, end_time => self%settings%end_time, &
                  accuracy => self%settings%accuracy)
          if (time_step > 0.0_wp) then
@@ -110,6 +115,12 @@ contains
          end if
 
          level = 0
+         ! the newest of three runs moves the others on, of which the first ones are none
+         cor = 0.0_wp
+         cor_sphere = 0.0_wp
+         contact_time = 0.0_wp
+         depth = 0.0_wp
+         force = 0.0_wp
          span = 5.0_wp*impact%time_scale()
          if (end_time > 0.0_wp) span = min(span, end_time)
          room = nint(span/dt)
@@ -213,12 +224,12 @@ contains
       run%second_coefficient = settings%second_coefficient
       run%viscosity = impact%kernel_viscosity()
       run%speed = impact%velocity
-      run%motion%alpha = impact%plate%alpha(0.0_wp)
+      run%motion%alpha = impact%target%alpha(0.0_wp)
       call make_room(run, impact, dt, room, trajectory)
       trajectory%state(:, 0) = 0.0_wp
       trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
       trajectory%state(col_force, 0) = impact%first_force()
-      trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
+      trajectory%state(col_plate_velocity, 0) = impact%target%alpha(0.0_wp)*impact%first_force()
       trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
       crude = .false.
       work = 0.0_wp

@@ -5,6 +5,7 @@ module vcor_solver_ive_course
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t
+   use vcor_solver_ive_control, only : control_t
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
    use vcor_solver_ive_newton, only : solve_companion
@@ -44,20 +45,13 @@ module vcor_solver_ive_course
       real(wp) :: force_difference = 0.0_wp
       !> The panel solved last, accepted or not
       type(panel_t) :: previous
-      !> Difference of the two that a panel may add, over `speed`, and accuracy of events [-]
-      real(wp) :: tolerance = 0.0_wp, accuracy = 0.0_wp
       !> Time scale of the contact [s], and its reference velocity [m/s]
       real(wp) :: time_scale = 0.0_wp, speed = 0.0_wp
       !> End of the computation if the contact lasts [s]
       real(wp) :: end_time = 0.0_wp
-      !> The step, and the duration wanted for the next one [s]
+      !> The step, and the control of its duration
       type(step_t) :: step
-      real(wp) :: length = 0.0_wp
-      !> What the panel adds to the difference of the motion, over `speed` [-]
-      real(wp) :: growth = 0.0_wp
-      !> What the panel adds to the difference over what it may add, and that of the panel refused
-      !> before, and its duration [s]
-      real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp), refused_duration = 0.0_wp
+      type(control_t) :: control
       !> Whether the panel ends with the largest indentation, the contact, the computation
       logical :: turns = .false., ends = .false., reaches_end_time = .false.
       !> Times from the end of the panel to the end of the contact in the two solutions [s]
@@ -68,17 +62,8 @@ module vcor_solver_ive_course
       real(wp) :: kick = 0.0_wp
       !> Errors of the results, once the contact has ended
       real(wp) :: last_errors(4) = 0.0_wp
-      !> `excess` of the end refused before
-      real(wp) :: refused_end = huge(1.0_wp)
-      !> An end that was found [s], and the time before which it is not tried again [s]
-      real(wp) :: end_found = 0.0_wp, lead = 0.0_wp
-      !> Rebound: time left, and the duration allowed for the last panel [s]
-      real(wp) :: rest = 0.0_wp, end_length = 0.0_wp
-      !> Rebound: t1' [-] and t1'' [1/s], for a guess
-      real(wp) :: rate = 0.0_wp, bend = 0.0_wp
-      !> Rebound: number of panels in which t1 seems to rise, and the end of the first one [s]
-      integer :: growths = 0
-      real(wp) :: growth_end = 0.0_wp
+      !> Rebound: time left [s], and t1' [-] and t1'' [1/s], for a guess
+      real(wp) :: rest = 0.0_wp, rate = 0.0_wp, bend = 0.0_wp
    contains
       procedure :: begin
       procedure :: record
@@ -146,7 +131,7 @@ contains
                   - panel%impulse(j)/impact%mass
                state(col_plate) = state(col_sphere) - panel%indentation(j)
                ! what Newton's method leaves is in s
-               if (.not. impact%plate%hereditary()) then
+               if (.not. impact%target%has_memory()) then
                   state(col_plate) = panel%alpha(j)*panel%impulse(j)
                   state(col_indentation) = state(col_sphere) - state(col_plate)
                end if
@@ -170,8 +155,12 @@ contains
       associate (fine => self%fine%panel, coarse => self%coarse%panel, impact => self%fine%impact)
          n = fine%stages
          rate = 1.0_wp/impact%mass
-         if (fine%alpha(n) > fine%alpha(0) .and. .not. impact%plate%hereditary()) &
-            rate = max(rate, impact%plate%alpha_rate(fine%time(n), fine%alpha(n)))
+         if (fine%alpha(n) > fine%alpha(0) .and. .not. impact%target%has_memory()) &
+            rate = max(rate, impact%target%alpha_rate(fine%time(n), fine%alpha(n)))
+         if (allocated(self%fine%sums%vibration)) then
+            error = error_beside_modes()
+            return
+         end if
          error = (added(fine%impulse, coarse%impulse)*rate &
             + added(fine%indentation, coarse%indentation)/self%time_scale)/self%speed
          ! errors of the memory of a plate at first contact decay
@@ -181,6 +170,26 @@ contains
       end associate
 
    contains
+
+      !> Error before a structure: that of the panel alone, as both solutions start from one state.
+      !> The surface moves in fast modes, too, which change nothing but s: the motion of the sphere
+      !> counts, and the mean of s over the panel
+      pure function error_beside_modes() result(error)
+         !> Error over `speed` [-]
+         real(wp) :: error
+
+         real(wp) :: mean
+
+         associate (fine => self%fine%panel, coarse => self%coarse%panel, &
+                    weight => self%fine%rule%weight, other => self%coarse%rule%weight)
+            mean = sum(weight(:n)*fine%pace(self%fine%rule%point(1:n))*fine%indentation(1:n)) &
+               - sum(other(:n - 1)*coarse%pace(self%coarse%rule%point(1:n - 1)) &
+               *coarse%indentation(1:n - 1))
+            error = ((abs(fine%impulse(n) - coarse%impulse(n - 1)) &
+               + abs(fine%second_impulse(n) - coarse%second_impulse(n - 1))/self%time_scale) &
+               /self%fine%impact%mass + abs(mean)/(fine%step%duration*self%time_scale))/self%speed
+         end associate
+      end function error_beside_modes
 
       !> What the panel adds to the difference between two values
       pure function added(one, other) result(difference)
@@ -269,8 +278,8 @@ contains
          panel%second_impulse(n) = panel%second_impulse(n) + panel%impulse(n)*time
          panel%impulse(n) = panel%impulse(n) + 0.5_wp*panel%force(n)*time
          panel%force(n) = 0.0_wp
-         if (self%fine%impact%plate%hereditary()) return
-         panel%alpha(n) = self%fine%impact%plate%alpha(panel%time(n))
+         if (self%fine%impact%target%has_memory()) return
+         panel%alpha(n) = self%fine%impact%target%alpha(panel%time(n))
          panel%indentation(n) = self%fine%impact%free_path(panel%time(n)) &
             - panel%second_impulse(n)/self%fine%impact%mass - panel%alpha(n)*panel%impulse(n)
       end associate
@@ -300,7 +309,9 @@ contains
          left = self%fine%tolerance*real(panels, wp)
          factor = 1.0_wp
          if (panel%indentation(n) < near_branch*panel%indentation(0)) factor = at_branch
-         least = min((self%added + left)*self%speed/v0, ive_harmless*self%accuracy)
+         least = min((self%added + left)*self%speed/v0, ive_harmless*self%control%accuracy)
+         ! the two solutions start each panel from one state
+         if (allocated(self%fine%sums%vibration)) least = (self%added + left)*self%speed/v0
          error(of_cor:of_cor_sphere) = max(factor*abs(fine - coarse)/v0, least) &
             + ive_rounding_per_panel*real(panels, wp)
          ! the contact ends with the force, or with the branch point of u
@@ -312,7 +323,7 @@ contains
             *panel%time(n)
          ! what one panel adds enters the force in full
          error(of_force) = max(at_branch*self%force_difference, min(self%added*self%speed/v0, &
-            ive_share*self%accuracy)*max_force)
+            ive_share*self%control%accuracy)*max_force)
       end associate
    end function errors
 
@@ -327,10 +338,13 @@ contains
       real(wp) :: impulse
 
       associate (panel => motion%panel, n => motion%panel%stages, impact => motion%impact, &
-                 plate => motion%impact%plate)
+                 plate => motion%impact%target)
          impulse = panel%impulse(n) + 0.5_wp*panel%force(n)*time
          v = impact%free_velocity(panel%time(n) + time) - impulse/impact%mass
-         if (plate%hereditary()) then
+         if (allocated(motion%sums%vibration)) then
+            ! against its rigid motion
+            v(1) = v(1) - impulse*sum(plate%structure%yield, .not. plate%structure%square > 0.0_wp)
+         else if (plate%hereditary()) then
             v(1) = v(1) - panel%drift(n)
             if (.not. motion%recedes) v(1) = v(1) &
                - time*panel%slope_at_end(motion%rule, panel%drift)
@@ -402,7 +416,7 @@ contains
          beyond = -0.5_wp*slopes(j)**2/sum(rule%derivative(j, :)*slopes)
          ! close to an end of the panel a parabola has it
          if (other < 0 .or. other > n .or. (j == 0 .or. j == n) &
-             .and. beyond >= 0.0_wp .and. beyond < ive_harmless*self%accuracy*value(j)) then
+             .and. beyond >= 0.0_wp .and. beyond < ive_harmless*self%control%accuracy*value(j)) then
             time = merge(self%fine%panel%step%duration, 0.0_wp, j == n)
             peak = value(j)
             if (other >= 0 .and. other <= n) peak = peak + beyond
@@ -417,8 +431,8 @@ contains
          difference = max(abs(peak - value_inside(self%coarse, of_indentation, theta)), &
             abs(value(j) - value_inside(self%coarse, of_indentation, rule%point(j))), &
             abs(value(other) - value_inside(self%coarse, of_indentation, rule%point(other))))
-         if (merge(1.0_wp, at_branch, of_indentation)*difference <= 0.5_wp*self%accuracy*peak) &
-            return
+         if (merge(1.0_wp, at_branch, of_indentation)*difference &
+             <= 0.5_wp*self%control%accuracy*peak) return
          call solve_up_to_peak(self, of_indentation, time, peak, difference)
       end associate
 

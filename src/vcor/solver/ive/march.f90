@@ -12,11 +12,14 @@
 module vcor_solver_ive_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : contact_separated, refuse_growth, trajectory_t
-   use vcor_kinds, only : finest_accuracy, wp
+   use vcor_impact_trajectory, only : col_indentation, col_plate_velocity, col_time, &
+      contact_separated, refuse_growth, trajectory_t
+   use vcor_kinds, only : finest_accuracy, unset, wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t, closing, doubling, linear, opening, rule_t
+   use vcor_solver_direct_contacts, only : comes_back
    use vcor_solver_ive_approach, only : approach_t
+   use vcor_solver_ive_control, only : length_factor
    use vcor_solver_ive_course, only : at_branch, course_t, of_cor, of_cor_sphere, of_time
    use vcor_solver_ive_equations, only : motion_t
    use vcor_solver_ive_event, only : cut_at_event, event_close, event_end, event_turn, &
@@ -24,9 +27,9 @@ module vcor_solver_ive_march
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
    use vcor_solver_ive_panel, only : step_t
-   use vcor_tuning, only : ive_cut, ive_first, ive_growth, ive_leftover, ive_part, &
+   use vcor_tuning, only : ive_first, ive_growth, ive_leftover, ive_part, &
       ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, ive_safety, ive_settling, &
-      ive_share, ive_tolerable
+      ive_share
    implicit none
    private
 
@@ -85,10 +88,10 @@ contains
          end if
          if (course%fine%recedes) then
             if (is_rising(course)) then
-               if (course%growths == 0) &
-                  course%growth_end = course%fine%start%time + course%step%duration
-               course%growths = course%growths + 1
-               if (course%growths > most_halvings) then
+               if (course%control%growths == 0) &
+                  course%control%growth_end = course%fine%start%time + course%step%duration
+               course%control%growths = course%control%growths + 1
+               if (course%control%growths > most_halvings) then
                   call stop_growing(course, trajectory, error)
                   return
                end if
@@ -103,6 +106,7 @@ contains
          if (over .or. course%reaches_end_time) return
          if (course%ends) then
             trajectory%status = contact_separated
+            if (allocated(sums%vibration)) call judge_separation(course%fine, trajectory)
             errors = course%last_errors
             return
          end if
@@ -112,6 +116,31 @@ contains
       if (over) return
       call raise_no_end(course, error)
    end subroutine follow
+
+   !> Find out whether the first separation from a structure is the last, and what energy is left in
+   !> it
+   subroutine judge_separation(motion, trajectory)
+      !> The solution, advanced to the end of the contact
+      type(motion_t), intent(in) :: motion
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: w
+
+      associate (vibration => motion%sums%vibration, modes => motion%start%modes, &
+                 last => trajectory%state(:, trajectory%last))
+         trajectory%first_end = last(col_time)
+         w = last(col_indentation)
+         if (.not. motion%recedes) w = motion%impact%law%u(w)
+         call comes_back(motion%impact, motion%sums%contact, vibration, modes, last, w, &
+            motion%start%lag, trajectory%returns)
+         trajectory%rigid_velocity = vibration%rigid_velocity(modes)
+         trajectory%structure_energy = unset
+         ! collocation damps modes that are fast compared with a panel
+         if (size(vibration%rate) == 0) trajectory%structure_energy = &
+            sum(trajectory%share(0:trajectory%last) &
+            *trajectory%state(col_plate_velocity, 0:trajectory%last)) - motion%start%lost
+      end associate
+   end subroutine judge_separation
 
    !> Start at first contact
    subroutine start(self, rules, bridge, impact, sums, approach, accuracy, share, time_scale, &
@@ -130,15 +159,17 @@ contains
       self%end_time = end_time
       self%speed = impact%speed_scale(time_scale)
       ! relative to `speed`: v0 may be near zero for a sphere that is put down
-      self%accuracy = max(accuracy*(impact%velocity/self%speed), min(accuracy, finest_accuracy))
+      self%control%accuracy = max(accuracy*(impact%velocity/self%speed), &
+         min(accuracy, finest_accuracy))
       ! the noise of moduli of both signs must not be resolved
       floor = 0.0_wp
       if (any(sums%contact%moduli < 0.0_wp)) floor = sums%contact%error
-      self%tolerance = max(ive_share*share*self%accuracy, floor, ive_rounding_per_panel)
+      self%control%tolerance = max(ive_share*share*self%control%accuracy, floor, &
+         ive_rounding_per_panel)
       self%bridge => bridge
       call start_motion(self%fine, rules(1))
       call start_motion(self%coarse, rules(2))
-      self%length = first_length(self, impact%law%contact_time*time_scale)
+      self%control%length = first_length(self, impact%law%contact_time*time_scale)
       call resolve_modes()
 
    contains
@@ -151,9 +182,9 @@ contains
 
          associate (g => sums%contact%moduli, l => sums%contact%rates)
             missed = abs(g)*impact%law%u(self%speed/l)/(l*impact%mass*self%speed)
-            do while (sum(missed, l*self%length > real(rules(1)%stages, wp)) &
-                      > ive_settling*self%tolerance)
-               self%length = ive_safety*self%length
+            do while (sum(missed, l*self%control%length > real(rules(1)%stages, wp)) &
+                      > ive_settling*self%control%tolerance)
+               self%control%length = ive_safety*self%control%length
             end do
          end associate
       end subroutine resolve_modes
@@ -168,13 +199,18 @@ contains
          motion%rule => rule
          motion%approach => approach
          ! at least rounding in products with a matrix
-         motion%tolerance = max(width**2*epsilon(1.0_wp), ive_leftover*self%tolerance)
+         motion%tolerance = max(width**2*epsilon(1.0_wp), ive_leftover*self%control%tolerance)
          associate (now => motion%start)
-            now%alpha = impact%plate%alpha(0.0_wp)
+            now%alpha = impact%target%alpha(0.0_wp)
             now%force = impact%first_force()
+            if (allocated(sums%vibration)) then
+               now%modes = sums%vibration%rest()
+               ! a flexibility takes up the velocity at first
+               if (sums%vibration%residual > 0.0_wp) now%force = 0.0_wp
+            end if
             now%velocity = impact%velocity - now%alpha*now%force
             allocate (now%lag(size(sums%contact%rates)), source=0.0_wp)
-            if (impact%plate%hereditary()) &
+            if (impact%target%hereditary()) &
                allocate (now%plate_lag(size(sums%plate%rates)), source=0.0_wp)
          end associate
       end subroutine start_motion
@@ -189,7 +225,7 @@ contains
       !> Length [s]
       real(wp) :: length
 
-      length = ive_first*time*self%tolerance**(1.0_wp/real(2*self%fine%rule%stages - 2, wp))
+      length = ive_first*time*self%control%tolerance**(1.0_wp/real(2*self%fine%rule%stages - 2, wp))
    end function first_length
 
    !> Choose the next step
@@ -201,22 +237,24 @@ contains
       associate (step => self%step, time => self%fine%start%time)
          self%ends = .false.
          step%kind = linear
-         step%duration = self%length
+         step%duration = self%control%length
          if (self%fine%recedes) then
-            self%ends = self%rest <= self%end_length
+            self%ends = self%rest <= self%control%end_length
             if (self%ends) then
                step = step_t(closing, self%rest)
             else
                ! the end is a branch point, from which panels keep a distance
-               part = min(ive_part, max(0.5_wp, 1.0_wp - self%end_length/self%rest))
-               step%duration = min(self%length, part*self%rest)
+               part = min(ive_part, max(0.5_wp, 1.0_wp - self%control%end_length/self%rest))
+               step%duration = min(self%control%length, part*self%rest)
                if (.not. time > self%fine%approach%end .and. is_fast(self)) step%kind = opening
             end if
          else
-            if (time < self%lead) step%duration = min(self%length, ive_part*(self%end_found - time))
+            if (time < self%control%lead) step%duration = min(self%control%length, &
+               ive_part*(self%control%end_found - time))
             ! a doubling is tried where it may do without the safety of the length
             doubled = 3.0_wp*time
-            if (.not. self%refused < huge(1.0_wp)) doubled = ive_safety*(2.0_wp + ive_safety)*time
+            if (.not. self%control%refused < huge(1.0_wp)) &
+               doubled = ive_safety*(2.0_wp + ive_safety)*time
             if (.not. time > 0.0_wp) then
                step%kind = opening
             else if (step%duration >= doubled .and. (has_settled(self) &
@@ -314,7 +352,7 @@ contains
          else
             ! an event that follows soon belongs to this panel
             if (self%reaches_end_time .or. .not. fine%start%time > 0.0_wp &
-                .or. self%refused < huge(1.0_wp)) return
+                .or. self%control%refused < huge(1.0_wp)) return
             call time_to_event(fine, event, time, found)
             if (.not. found .or. .not. time > 0.0_wp .or. time > soon*panel%step%duration) return
             time = time + panel%step%duration
@@ -322,7 +360,7 @@ contains
             self%ends = event == event_end
          end if
          self%reaches_end_time = .false.
-         call cut_at_event(fine, event, self%accuracy, time, found)
+         call cut_at_event(fine, event, self%control%accuracy, time, found)
          panel%converged = found
       end associate
    end subroutine look_for_event
@@ -343,7 +381,7 @@ contains
          call solve_panel(fine, self%step, .true.)
          if (.not. panel%converged) return
          if (self%ends) then
-            call cut_at_event(fine, event_close, self%accuracy, panel%step%duration, found)
+            call cut_at_event(fine, event_close, self%control%accuracy, panel%step%duration, found)
             panel%converged = found
             if (found) self%rest = panel%step%duration
          else
@@ -368,10 +406,10 @@ contains
 
       associate (fine => self%fine, impact => self%fine%impact)
          ! the indentation is what is left of the fall g t^2/2: its rounding must not be resolved
-         self%tolerance = max(self%tolerance, ive_rounding_of_fall*0.5_wp*impact%gravity &
-            *fine%start%time**2/(self%speed*self%time_scale))
-         self%growth = self%motion_error()
-         self%excess = self%growth/self%tolerance
+         self%control%tolerance = max(self%control%tolerance, ive_rounding_of_fall*0.5_wp &
+            *impact%gravity*fine%start%time**2/(self%speed*self%time_scale))
+         self%control%growth = self%motion_error()
+         self%control%excess = self%control%growth/self%control%tolerance
          call fine%find_velocity()
          associate (coarse => self%coarse%panel)
             coarse%velocity(coarse%stages) = self%coarse%velocity_at(coarse%stages)
@@ -380,28 +418,28 @@ contains
             call self%find_ends(trajectory%max_force, found)
             if (found) then
                error = self%errors(0, trajectory%max_force)
-               self%excess = max(self%excess, &
-                  maxval(error(of_cor:of_cor_sphere))/self%accuracy, &
-                  0.5_wp*error(of_time)/(self%accuracy*fine%panel%time(fine%panel%stages)))
+               self%control%excess = max(self%control%excess, &
+                  maxval(error(of_cor:of_cor_sphere))/self%control%accuracy, &
+                  0.5_wp*error(of_time)/(self%control%accuracy*fine%panel%time(fine%panel%stages)))
             else
-               self%excess = huge(1.0_wp)
+               self%control%excess = huge(1.0_wp)
             end if
          end if
          if (fine%recedes .and. self%step%kind == linear &
              .and. .not. fine%start%time > fine%approach%end) then
             self%kick = self%missed_kick()
-            self%excess = max(self%excess, self%kick/self%tolerance)
+            self%control%excess = max(self%control%excess, self%kick/self%control%tolerance)
          end if
-         if (hides_an_end(self, trajectory%max_force)) self%excess = huge(1.0_wp)
-         if (.not. self%excess >= 0.0_wp) self%excess = huge(1.0_wp)
+         if (hides_an_end(self, trajectory%max_force)) self%control%excess = huge(1.0_wp)
+         if (.not. self%control%excess >= 0.0_wp) self%control%excess = huge(1.0_wp)
          if (fine%recedes .or. is_refused(self)) return
          call self%find_peaks()
          ! the force where it is largest; elsewhere its errors are remainders of transients
          if (self%peaks%force > trajectory%max_force &
              .and. self%peaks%time_of_force < self%step%duration) then
             inherited = abs(fine%start%force - self%coarse%start%force)
-            self%excess = max(self%excess, at_branch*(self%peaks%force_difference - inherited) &
-               /(self%accuracy*self%peaks%force))
+            self%control%excess = max(self%control%excess, at_branch &
+               *(self%peaks%force_difference - inherited)/(self%control%accuracy*self%peaks%force))
          end if
       end associate
    end subroutine judge
@@ -435,73 +473,27 @@ contains
       end associate
    end function hides_an_end
 
-   !> Whether the panel is refused. A difference that a shorter panel did not halve is inherited, or
-   !> rounding
+   !> Whether the panel is refused
    pure function is_refused(self)
       type(course_t), intent(in) :: self
       logical :: is_refused
 
-      is_refused = .not. (self%excess <= 1.0_wp .or. self%excess <= ive_tolerable &
-         .and. self%excess > 0.5_wp*self%refused .and. self%fine%start%time > 0.0_wp)
-      ! a time of the end that does not improve is as good as rounding and inherited errors allow
-      if (self%ends .and. self%growth <= self%tolerance .and. self%excess < huge(1.0_wp)) &
-         is_refused = is_refused .and. .not. self%excess > 0.5_wp*self%refused_end
+      is_refused = self%control%is_refused(self%ends, .not. self%fine%start%time > 0.0_wp)
    end function is_refused
 
    !> Shorten a panel that was refused
    subroutine shorten(self)
       type(course_t), intent(inout) :: self
 
-      real(wp) :: order, left, last, duration
-
-      last = self%refused
-      self%refused = self%excess
-      if (self%ends) self%refused_end = self%excess
-      duration = self%step%duration
-      associate (start => self%fine%start)
-         if (self%ends .and. .not. self%fine%recedes) then
-            ! next to s = 0 the error falls as s u(s): other panels lead to the end
-            self%end_found = start%time + duration
-            order = 1.0_wp + self%fine%impact%law%start_exponent
-            left = min(1.0_wp - ive_part, max((1.0_wp - ive_part)**4, self%excess**(-1.0_wp/order)))
-            self%lead = self%end_found - 1.001_wp*left*duration
-            self%length = duration
-            return
-         end if
-         order = real(2*self%fine%rule%stages - 2, wp)
-         ! where modes settle within the panel its order is lower; two refusals tell
-         if (last < huge(last) .and. self%refused_duration > duration) order = max(1.0_wp, &
-            min(order, log(last/self%excess)/log(self%refused_duration/duration)))
-         self%refused_duration = duration
-         duration = duration*max(ive_cut, length_factor(max(1.0_wp, self%excess), order))
-         if (self%ends) then
-            self%end_length = duration
-         else
-            self%length = duration
-         end if
-      end associate
+      call self%control%shorten(self%step%duration, self%fine%rule%stages, self%ends, &
+         self%fine%start%time, self%fine%recedes, self%fine%impact%law%start_exponent)
    end subroutine shorten
-
-   !> Factor from the length of a panel to one with an excess of 1, in steps: rounding in a small
-   !> difference must not move the panels
-   pure function length_factor(excess, order) result(factor)
-      real(wp), intent(in) :: excess
-      !> Power of the length with which the excess grows
-      real(wp), intent(in) :: order
-      real(wp) :: factor
-
-      real(wp), parameter :: steps = 16.0_wp
-
-      factor = aint(steps*ive_safety*min(excess**(-1.0_wp/order), 1.0_wp/epsilon(1.0_wp)))/steps
-   end function length_factor
 
    !> Halve a panel that cannot be solved
    subroutine halve(self)
       type(course_t), intent(inout) :: self
 
-      self%length = 0.5_wp*self%step%duration
-      self%end_length = min(self%end_length, self%length)
-      if (self%fine%start%time < self%lead) self%lead = 0.0_wp
+      call self%control%halve(self%step%duration, self%fine%start%time)
    end subroutine halve
 
    !> Whether t1 rises somewhere in the panel: in both solutions, by more than the two differ
@@ -537,7 +529,7 @@ contains
 
       logical :: over
 
-      if (self%fine%sums%contact%error > self%accuracy) then
+      if (self%fine%sums%contact%error > self%control%accuracy) then
          call raise(error, error_numerical, 'the contact seems to grow again before it has ' &
             //'ended, which may be the error of the sum of exponentials that represents the ' &
             //'material')
@@ -582,8 +574,8 @@ contains
       type(course_t), intent(inout) :: self
       type(trajectory_t), intent(inout) :: trajectory
 
-      self%refused = huge(1.0_wp)
-      self%added = self%added + self%growth
+      self%control%refused = huge(1.0_wp)
+      self%added = self%added + self%control%growth
       associate (fine => self%fine, panel => self%fine%panel)
          if (self%ends) then
             self%last_errors = self%errors(trajectory%steps + 1, trajectory%max_force)
@@ -594,9 +586,14 @@ contains
          if (fine%impact%law%receding .and. .not. fine%recedes) call fine%approach%add( &
             fine%rule, fine%sums%contact%rates, panel)
          call fine%advance()
-         call self%coarse%advance()
+         if (allocated(fine%sums%vibration)) then
+            ! what the two differ by in fast modes would part them, however well these average out
+            self%coarse%start = fine%start
+         else
+            call self%coarse%advance()
+         end if
          ! panels that creep to the place where the contact grows have not passed it
-         if (fine%start%time >= self%growth_end) self%growths = 0
+         if (fine%start%time >= self%control%growth_end) self%control%growths = 0
       end associate
    end subroutine accept
 
@@ -607,13 +604,15 @@ contains
       real(wp) :: factor
 
       associate (fine => self%fine, time => self%fine%start%time)
-         factor = min(ive_growth, length_factor(max(self%excess, tiny(1.0_wp)), &
+         factor = min(ive_growth, length_factor(max(self%control%excess, tiny(1.0_wp)), &
             real(2*fine%rule%stages - 2, wp)))
-         self%length = factor*self%step%duration
+         self%control%length = factor*self%step%duration
          ! near first contact steps in sqrt(t) grow by this factor
          if (.not. fine%recedes) then
-            if (self%step%kind == opening) self%length = time*min(3.0_wp, factor*(2.0_wp + factor))
-            if (self%step%kind == doubling) self%length = time*factor*(1.0_wp + 0.25_wp*factor)
+            if (self%step%kind == opening) &
+               self%control%length = time*min(3.0_wp, factor*(2.0_wp + factor))
+            if (self%step%kind == doubling) &
+               self%control%length = time*factor*(1.0_wp + 0.25_wp*factor)
          end if
          if (self%turns) then
             call fine%turn()
@@ -621,9 +620,9 @@ contains
             self%previous%stages = 0
             self%rate = -1.2_wp
             self%rest = fine%approach%end
-            self%length = first_length(self, 4.0_wp*fine%approach%end)
-            self%end_length = self%length
-            if (is_fast(self)) self%end_length = 0.5_wp*self%length
+            self%control%length = first_length(self, 4.0_wp*fine%approach%end)
+            self%control%end_length = self%control%length
+            if (is_fast(self)) self%control%end_length = 0.5_wp*self%control%length
          else if (fine%recedes) then
             call extrapolate(self)
          end if

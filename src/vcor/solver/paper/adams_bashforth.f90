@@ -13,8 +13,9 @@ module vcor_solver_paper_adams_bashforth
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_direct_product, only : new_product, product_t
+   use vcor_solver_features, only : features, paper, refuse_features
    use vcor_solver_paper_march, only : capped, march, share_of_newest, stable_damping
-   use vcor_solver_type, only : solver_settings_t, solver_t
+   use vcor_solver_type, only : features_of, solver_settings_t, solver_t
    implicit none
    private
 
@@ -84,12 +85,14 @@ contains
       ! a k' that is infinite at 0 grows as a power of time towards it
       real(wp), parameter :: early = 1.0e-12_wp, noticeable = 1.01_wp
       type(exponential_sum_t) :: terms
+      logical :: has(size(features))
       real(wp) :: time
 
-      if (impact%kernel_viscosity() > 0.0_wp) then
-         call raise(error, error_input, "scheme = 'adams_bashforth' has no term for a viscosity; " &
-            //"use scheme = 'product' or method = 'ive'")
-      else if (self%settings%form == 'b') then
+      has = features_of(self%settings, impact)
+      has(paper) = .true.
+      call refuse_features(has, error)
+      if (allocated(error)) return
+      if (self%settings%form == 'b') then
          time = early*impact%time_scale()
          if (impact%modulus%glassy() > huge(1.0_wp)) then
             call raise(error, error_input, "form = 'b' needs a finite modulus at t = 0, which " &
@@ -235,7 +238,7 @@ contains
       call product%solve(impact, trajectory, error)
       damping = 0.0_wp
       do i = 1, trajectory%last
-         damping = max(damping, impact%plate%alpha(trajectory%state(col_time, i)) &
+         damping = max(damping, impact%target%alpha(trajectory%state(col_time, i)) &
             *impact%law%slope(trajectory%state(col_indentation, i)))
       end do
 
