@@ -3,16 +3,16 @@
 !>
 !>     z(t) - h(x) = [C q](x, t) and q > 0, or z(t) - h(x) <= [C q](x, t) and q = 0
 !>
-!> The springs under contact need not be contiguous. What they miss of the force, as the edge of the
-!> contact lies between two of them, is added, or the force would change by steps as springs come
-!> into contact one by one. The sphere is a part of the response that moves
-!> as a whole, 1/(m s^2), by two recurrences of the same rule in place of sums.
+!> The springs under contact need not be contiguous. What they miss of the force at the edge of the
+!> contact is added (`vcor_solver_coupled_edge`). The sphere is a part of the response that moves as a
+!> whole, 1/(m s^2), by two recurrences of the same rule in place of sums.
 module vcor_solver_coupled_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgesv, dgetrs
    use vcor_solver_convolution, only : dot
+   use vcor_solver_coupled_edge, only : edge_t, find_dents
    use vcor_solver_coupled_kernel, only : kernel_t
    use vcor_solver_coupled_rule, only : differences, integrals
    implicit none
@@ -68,14 +68,16 @@ module vcor_solver_coupled_march
       logical, allocatable :: pushes(:)
       !> Approach of the bodies over the springs without the forces of this step [m]
       real(wp), allocatable :: gap(:)
+      !> Part of it that the springs keep of earlier pressures [m]
+      real(wp), allocatable :: dent(:)
       !> Compression of the springs of this step [m], > 0 where they push
       real(wp), allocatable :: compression(:)
       !> Forces of the hats that the springs miss at the edge of the contact [N], shape (hats)
       real(wp), allocatable :: missing(:)
-      !> Radius of the contact [m]
-      real(wp) :: radius = 0.0_wp
-      !> Number of springs up to the last that has pushed
-      integer :: reach = 0
+      !> Edge of the contact
+      type(edge_t) :: edge
+      !> Number of springs up to the last that has pushed, in this step, and before it
+      integer :: reach = 0, touched = 0
    end type balance_t
 
 contains
@@ -135,8 +137,12 @@ contains
                end do
             end if
             balance%gap = impact%free_path(real(k, wp)*course%dt) - profile
-            if (kernel%remembers) call subtract_past(balance%gap(:balance%reach), pressure, &
-               kernel%local(:k - 1))
+            balance%touched = balance%reach
+            if (kernel%remembers) then
+               call find_dents(balance%dent(:balance%reach), pressure, kernel%local(:k - 1))
+               balance%gap = balance%gap - balance%dent
+               call balance%edge%begin_step(k, kernel%local)
+            end if
             call spread_hats(kernel, -bend, balance%gap)
             call find_pushing(balance, kernel, error)
             if (allocated(error)) return
@@ -152,7 +158,8 @@ contains
                *course%force(k)
             course%velocity(k) = impact%free_velocity(real(k, wp)*course%dt) - lost(0)
             course%z(k) = impact%free_path(real(k, wp)*course%dt) - path(0)
-            course%radius(k) = balance%radius
+            course%radius(k) = balance%edge%radius
+            call balance%edge%end_step(k, row, findloc(balance%pushes, .true., 1, back=.true.))
             if (is_bounded .and. balance%pushes(row%springs)) then
                course%status = course_outgrows
                return
@@ -207,36 +214,12 @@ contains
 
       associate (n => kernel%mesh%hats, springs => kernel%row%springs)
          allocate (self%now(n, n), source=kernel%now + sphere)
-         allocate (self%gram(n, n), self%gap(springs), self%compression(springs), &
-            self%missing(n), source=0.0_wp)
+         allocate (self%gram(n, n), self%gap(springs), self%dent(springs), &
+            self%compression(springs), self%missing(n), source=0.0_wp)
          allocate (self%pushes(springs), source=.false.)
+         call self%edge%begin(kernel%mesh%steps, kernel%remembers)
       end associate
    end subroutine prepare
-
-   !> Subtract what earlier pressures have left in the springs, four steps at a time, as the sum
-   !> would otherwise be loaded and stored for each
-   pure subroutine subtract_past(gap, pressure, local)
-      !> Approach of the bodies over the springs [m]
-      real(wp), contiguous, intent(inout) :: gap(:)
-      !> Pressures of earlier steps [N/m], shape (springs, >= steps)
-      real(wp), contiguous, intent(in) :: pressure(:, :)
-      !> Weights of the springs from lag 0 to that of the first step, shape (0:steps)
-      real(wp), intent(in) :: local(0:)
-
-      integer :: i, n, steps
-
-      n = size(gap)
-      steps = ubound(local, 1)
-      do i = 1, steps - 3, 4
-         gap = gap - (local(steps + 1 - i)*pressure(:n, i) &
-            + local(steps - i)*pressure(:n, i + 1) &
-            + local(steps - 1 - i)*pressure(:n, i + 2) &
-            + local(steps - 2 - i)*pressure(:n, i + 3))
-      end do
-      do i = steps - modulo(steps, 4) + 1, steps
-         gap = gap - local(steps + 1 - i)*pressure(:n, i)
-      end do
-   end subroutine subtract_past
 
    !> Add a function on the hats to one on the springs
    pure subroutine spread_hats(kernel, hats, springs)
@@ -336,6 +319,15 @@ contains
          //'be found')
    end subroutine find_pushing
 
+   !> Find the edge and what the springs miss there
+   pure subroutine find_edge(self, kernel)
+      type(balance_t), intent(inout) :: self
+      type(kernel_t), intent(in) :: kernel
+
+      call self%edge%find(kernel%row, kernel%local(0), self%compression, self%dent, self%pushes, &
+         self%touched, self%missing)
+   end subroutine find_edge
+
    !> Let a spring push, or not
    pure subroutine change(self, kernel, i)
       type(balance_t), intent(inout) :: self
@@ -357,36 +349,6 @@ contains
       end associate
       self%reach = max(self%reach, i)
    end subroutine change
-
-   !> Find the edge of the contact, where the compression, as a^2 - x^2, passes through 0, and the
-   !> forces that the springs miss: a part of the row counts with two springs or one, and not as far
-   !> as the edge
-   pure subroutine find_edge(self, kernel)
-      type(balance_t), intent(inout) :: self
-      type(kernel_t), intent(in) :: kernel
-
-      real(wp) :: decline, end
-      integer :: i
-
-      self%missing = 0.0_wp
-      self%radius = 0.0_wp
-      i = findloc(self%pushes, .true., dim=1, back=.true.)
-      if (i == 0) return
-      associate (x => kernel%row%x, u => self%compression, a => self%radius, &
-                 weight => kernel%row%weight(i), hat => kernel%row%hat(i))
-         a = x(i)
-         if (i == size(x)) return
-         ! of the compression with x^2
-         decline = (u(i) - u(i + 1))/(x(i + 1)**2 - x(i)**2)
-         if (.not. decline > 0.0_wp) return
-         a = sqrt(x(i)**2 + min(max(u(i)/decline, 0.0_wp), x(i + 1)**2 - x(i)**2))
-         ! the part of this spring: what its two springs would add up to, and the rest to the edge
-         end = 0.5_wp*(x(i) + x(i - 1 + 2*modulo(i, 2)) + weight)
-         self%missing(hat:hat + 1) = kernel%row%value(:, i)*decline/kernel%local(0) &
-            *(2.0_wp/3.0_wp*(a - end)**2*(2.0_wp*a + end) &
-            + real(modulo(i, 2), wp)*weight*(a**2 - x(i + 1)**2))
-      end associate
-   end subroutine find_edge
 
    !> Compression at a node of the hats, linear in the profile of the springs on both sides of it,
    !> or of the first two
