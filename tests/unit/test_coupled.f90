@@ -43,6 +43,7 @@ program test_coupled
    call test_passive()
    call test_meshes()
    call test_edge()
+   call test_edge_of_memory()
    call test_sharing()
    call test_settled()
    call test_punch()
@@ -580,6 +581,35 @@ contains
          "the force follows the approach between springs")
    end subroutine test_edge
 
+   !> With a memory the next spring, which does not push, does not show where the edge is: few
+   !> springs with many steps each have the coefficient of many springs, where the pressure at the
+   !> edge ends with a step and where it does not
+   subroutine test_edge_of_memory()
+      real(wp), parameter :: none(0) = 0.0_wp, tolerance = 4.0e-6_wp
+      type(prony_t) :: viscous
+      type(power_law_t) :: fractional
+      type(impact_t) :: impact
+      type(error_t), allocatable :: error
+
+      call new_prony(viscous, 1.0e7_wp, none, none, 1.0e3_wp, error)
+      call viscous%set_constants(error, density=1000.0_wp, poisson_ratio=0.0_wp)
+      call make_impact(impact, viscous, base_half_space, 0.0_wp, 2.0_wp, 0.01_wp, sphere(0.01_wp), &
+         has_waves=.false.)
+      call check_close(cor_on(impact, 480, 60, 5), cor_on(impact, 480, 900, 5), tolerance, &
+         "springs under the edge on a viscous face")
+      call new_power_law(fractional, 5.0e6_wp, 8.0e5_wp, 0.35_wp, error)
+      call fractional%set_constants(error, density=1000.0_wp, poisson_ratio=0.0_wp)
+      call make_impact(impact, fractional, base_half_space, 0.0_wp, 2.0_wp, 0.01_wp, &
+         sphere(0.01_wp), has_waves=.false.)
+      call check_close(cor_on(impact, 480, 60, 5), cor_on(impact, 480, 900, 5), tolerance, &
+         "springs under the edge of a power law")
+      ! the edge of a cone is as far from the springs beside it near the axis as from the axis
+      call make_impact(impact, viscous, base_half_space, 0.0_wp, 2.0_wp, 0.01_wp, &
+         cone_factor(60.0_wp), exponent=2.0_wp, has_waves=.false.)
+      call check_close(cor_on(impact, 480, 112, 5), cor_on(impact, 480, 900, 5), &
+         3.0_wp*tolerance, "springs under the edge of a cone")
+   end subroutine test_edge_of_memory
+
    !> Coefficient of a march
    function cor_on(impact, steps, springs, hats, longer) result(cor)
       type(impact_t), intent(in) :: impact
@@ -711,7 +741,8 @@ contains
    !> impact is a part of cor_sphere. On an elastic half space the sphere is where it began at the
    !> end but for these waves, z(t0) = g R V^2/c^2, g = 0.089 - 0.085 nu for a rigid sphere
    subroutine test_end_of_contact()
-      real(wp), parameter :: gravity = 9.81_wp, resolved = 1.0e-5_wp, share = 0.089_wp - 0.085_wp*0.3_wp
+      real(wp), parameter :: gravity = 9.81_wp, resolved = 1.0e-5_wp
+      real(wp), parameter :: share = 0.089_wp - 0.085_wp*0.3_wp
       real(wp), parameter :: none(0) = 0.0_wp, radius = 0.005_wp
       real(wp), parameter :: velocity(4) = [0.05_wp, 0.1_wp, 0.3_wp, 1.0_wp]
       type(impact_t) :: impact

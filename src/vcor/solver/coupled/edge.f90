@@ -2,14 +2,15 @@
 !> do not count: a part of the row counts with two springs or one, and not as far as the edge. The
 !> force would change by steps as springs come into contact one by one.
 !>
-!> From the last spring of the part before to the edge the pressure q(x) is a chain of lines of x^2:
+!> With a body of profile h(x) ~ x^n the pressure q(x) from the last spring of the part before to
+!> the edge is a chain of lines of x^n:
 !>
 !> - Without memory it is one line, through the next spring too, which does not push.
-!> - With memory the next spring is not on it: its dent is older. While the contact grows over a face
-!>   that has not been touched, the edge is where the bodies meet, and a place between two springs has
-!>   a pressure by the time since the edge has passed it, on a viscous face with a step at its
-!>   beginning. As the approach varies as a line from spring to spring, and the response is linear,
-!>   the chain has its corners where the edge was at the earlier steps: the rim.
+!> - With memory the next spring is not on it: its dent is older. While the contact grows over a
+!>   face that has not been touched, the edge is where the bodies meet, and a place between two
+!>   springs has a pressure by the time since the edge has passed it, on a viscous face with a step
+!>   at its beginning. As the approach varies as a line from spring to spring, and the response is
+!>   linear, the chain has its corners where the edge was at the earlier steps: the rim.
 !> - While the contact shrinks the pressure is smooth, and the line of the last two springs ends at
 !>   the edge.
 module vcor_solver_coupled_edge
@@ -26,6 +27,8 @@ module vcor_solver_coupled_edge
 
    !> The edge
    type :: edge_t
+      !> Exponent n of the profile of the body, 2 of a sphere
+      real(wp) :: power = 2.0_wp
       !> Radius of the contact [m], in this step and the step before
       real(wp) :: radius = 0.0_wp, before = 0.0_wp
       !> Whether the contact grows over a face that has not been touched
@@ -46,8 +49,10 @@ module vcor_solver_coupled_edge
       procedure :: end_step
    end type edge_t
 
-   !> Chain of lines of x^2
+   !> Chain of lines of x^n
    type :: chain_t
+      !> Exponent n
+      real(wp) :: power = 2.0_wp
       !> Number of points
       integer :: points = 0
       !> Places [m], increasing, and pressures [N/m]
@@ -60,13 +65,16 @@ module vcor_solver_coupled_edge
 contains
 
    !> Prepare for a march
-   pure subroutine begin(self, steps, remembers)
+   pure subroutine begin(self, start_exponent, steps, remembers)
       class(edge_t), intent(inout) :: self
+      !> Exponent of the law of the static contact at its start, 1 + 1/n, or 1 of a punch
+      real(wp), intent(in) :: start_exponent
       !> Number of steps
       integer, intent(in) :: steps
       !> Whether the springs have a memory
       logical, intent(in) :: remembers
 
+      if (start_exponent > 1.0_wp) self%power = 1.0_wp/(start_exponent - 1.0_wp)
       if (remembers) allocate (self%past(most, steps), source=0.0_wp)
    end subroutine begin
 
@@ -98,7 +106,7 @@ contains
       real(wp), intent(out) :: missing(:)
 
       type(chain_t) :: chain
-      real(wp) :: q(size(compression)), fall, here, place
+      real(wp) :: q(size(compression)), rise, fall, here, slope
       integer :: first, i, j
 
       missing = 0.0_wp
@@ -106,35 +114,38 @@ contains
       self%grows = .false.
       i = findloc(pushes, .true., dim=1, back=.true.)
       if (i == 0) return
-      associate (x => row%x, weight => row%weight(i), hat => row%hat(i))
+      associate (x => row%x, n => self%power, weight => row%weight(i), hat => row%hat(i))
          self%radius = x(i)
          if (i == size(x)) return
          q = compression/local
          first = i - 1 + modulo(i, 2)
+         chain%power = n
          do j = max(1, first - 1), i
             call chain%insert(x(j), q(j))
          end do
-         fall = (q(i) - q(i + 1))/(x(i + 1)**2 - x(i)**2)
+         ! of x^n to the next spring
+         rise = x(i + 1)**n - x(i)**n
          if (allocated(self%past) .and. i >= touched) then
+            ! approach without dents
             here = compression(i) + dent(i)
-            self%radius = sqrt(x(i)**2 + (x(i + 1)**2 - x(i)**2)*here/(here - compression(i + 1)))
+            slope = (compression(i + 1) - here)/rise
+            self%radius = (x(i)**n - here/slope)**(1.0_wp/n)
             self%grows = self%radius >= self%before
          end if
          if (self%grows) then
             do j = 1, self%corners
-               place = self%place(j)
-               self%pressure(j) = (here + (compression(i + 1) - here) &
-                  *(place**2 - x(i)**2)/(x(i + 1)**2 - x(i)**2) - self%dent(j))/local
-               call chain%insert(place, self%pressure(j))
+               self%pressure(j) = (here + slope*(self%place(j)**n - x(i)**n) - self%dent(j))/local
+               call chain%insert(self%place(j), self%pressure(j))
             end do
             call chain%insert(self%radius, 0.0_wp)
          else
+            fall = (q(i) - q(i + 1))/rise
             if (allocated(self%past) .and. i > 1) then
-               if (pushes(i - 1)) fall = (q(i - 1) - q(i))/(x(i)**2 - x(i - 1)**2)
+               if (pushes(i - 1)) fall = (q(i - 1) - q(i))/(x(i)**n - x(i - 1)**n)
             end if
             self%radius = x(i + 1)
-            if (q(i) < fall*(x(i + 1)**2 - x(i)**2)) self%radius = sqrt(x(i)**2 + q(i)/fall)
-            call chain%insert(self%radius, q(i) - fall*(self%radius**2 - x(i)**2))
+            if (q(i) < fall*rise) self%radius = (x(i)**n + q(i)/fall)**(1.0_wp/n)
+            call chain%insert(self%radius, q(i) - fall*(self%radius**n - x(i)**n))
          end if
          missing(hat:hat + 1) = row%value(:, i)*(2.0_wp*chain%integral(0.5_wp*(x(first) &
             + x(first + 1) - weight)) - weight*sum(q(first:i)))
@@ -207,18 +218,18 @@ contains
       integer :: i
 
       integral = 0.0_wp
-      do i = 1, self%points - 1
-         associate (x => self%x(i + 1))
-            if (.not. x > self%x(i)) cycle
-            if (x <= start .and. i + 1 < self%points) cycle
-            from = self%x(i)
+      associate (x => self%x, n => self%power)
+         do i = 1, self%points - 1
+            if (.not. x(i + 1) > x(i)) cycle
+            if (x(i + 1) <= start .and. i + 1 < self%points) cycle
+            from = x(i)
             if (i == 1 .or. from < start) from = start
-            slope = (self%q(i + 1) - self%q(i))/(x**2 - self%x(i)**2)
-            q = self%q(i) + slope*(from**2 - self%x(i)**2)
-            integral = integral + (x - from)*(0.5_wp*(q + self%q(i + 1)) &
-               - slope*(x - from)**2/6.0_wp)
-         end associate
-      end do
+            slope = (self%q(i + 1) - self%q(i))/(x(i + 1)**n - x(i)**n)
+            q = self%q(i) + slope*(from**n - x(i)**n)
+            integral = integral + (x(i + 1) - from)*(q - slope*from**n) &
+               + slope*(x(i + 1)**(n + 1.0_wp) - from**(n + 1.0_wp))/(n + 1.0_wp)
+         end do
+      end associate
    end function integral
 
    !> Dents that earlier pressures have left, four steps at a time, as the sum would otherwise be

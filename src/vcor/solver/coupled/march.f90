@@ -4,8 +4,8 @@
 !>     z(t) - h(x) = [C q](x, t) and q > 0, or z(t) - h(x) <= [C q](x, t) and q = 0
 !>
 !> The springs under contact need not be contiguous. What they miss of the force at the edge of the
-!> contact is added (`vcor_solver_coupled_edge`). The sphere is a part of the response that moves as a
-!> whole, 1/(m s^2), by two recurrences of the same rule in place of sums.
+!> contact is added (`vcor_solver_coupled_edge`). The sphere is a part of the response that moves as
+!> a whole, 1/(m s^2), by two recurrences of the same rule in place of sums.
 module vcor_solver_coupled_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -116,6 +116,7 @@ contains
          ! response of the sphere to the force of this step
          call prepare(balance, kernel, &
             (course%dt*integrals(0)/differences(0))**2/impact%mass)
+         call balance%edge%begin(impact%law%start_exponent, steps, kernel%remembers)
          lost = 0.0_wp
          path = 0.0_wp
          axis(0) = 0.0_wp
@@ -217,7 +218,6 @@ contains
          allocate (self%gram(n, n), self%gap(springs), self%dent(springs), &
             self%compression(springs), self%missing(n), source=0.0_wp)
          allocate (self%pushes(springs), source=.false.)
-         call self%edge%begin(kernel%mesh%steps, kernel%remembers)
       end associate
    end subroutine prepare
 
