@@ -10,7 +10,7 @@
 module vcor_impact_face
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_response, only : base_bonded, base_free, base_half_space, base_sliding, &
-      static_response, wave_response
+      static_response, wave_responses
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    implicit none
@@ -180,7 +180,7 @@ contains
       complex(wp), intent(out) :: excess(:)
 
       if (self%has_waves) then
-         excess = wave_response(self%base, self%poisson_ratio(), self%thickness, k, p)
+         call wave_responses(self%base, self%poisson_ratio(), self%thickness, k, p, excess)
       else
          excess = static_response(self%base, self%poisson_ratio(), k*self%thickness)
       end if
@@ -196,7 +196,7 @@ contains
       !> L - 1 [-], same shape
       complex(wp), intent(out) :: excess(:)
 
-      excess = wave_response(base_half_space, self%poisson_ratio(), 0.0_wp, k, p)
+      call wave_responses(base_half_space, self%poisson_ratio(), 0.0_wp, k, p, excess)
    end subroutine half_space_response
 
 end module vcor_impact_face

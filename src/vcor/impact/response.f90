@@ -22,7 +22,7 @@ module vcor_impact_response
    private
 
    public :: base_half_space, base_free, base_bonded, base_sliding
-   public :: static_response, wave_response
+   public :: static_response, wave_response, wave_responses
 
    !> What is below the face: the body reaches to infinity
    integer, parameter :: base_half_space = 0
@@ -78,31 +78,122 @@ contains
       !> L - 1 [-]
       complex(wp) :: excess
 
+      complex(wp) :: one(1)
+
+      call wave_responses(base, nu, thickness, [k], p, one)
+      excess = one(1)
+   end function wave_response
+
+   !> L - 1 of a face with waves at many wavenumbers. The half space is in real numbers, for then
+   !> the compiler computes two at once; the layer takes the rates from it, and only where it is
+   !> thin enough to differ
+   pure subroutine wave_responses(base, nu, thickness, k, p, excess)
+      !> One of the `base_*` constants
+      integer, intent(in) :: base
+      !> Poisson's ratio [-]
+      real(wp), intent(in) :: nu
+      !> Thickness H [m], > 0 for a layer
+      real(wp), intent(in) :: thickness
+      !> Wavenumbers k [1/m], > 0
+      real(wp), intent(in) :: k(:)
+      !> Laplace variable divided by the speed of shear waves [1/m], real part > 0
+      complex(wp), intent(in) :: p
+      !> L - 1 [-], same shape
+      complex(wp), intent(out) :: excess(:)
+
       ! exponent beyond which a layer differs from the half space by less than rounding
       real(wp), parameter :: far = 38.0_wp
-      complex(wp) :: y, a, b, s, t, d, poly, kappa, even, less, ta, tb, more, ratio
-      ! of the wave that reaches farther, 1, and the other, 2: rate, exp(-2 length rate) and 1 less
-      ! that; f and w make up the difference of their tangents
-      complex(wp) :: rate, e1, e2, rest1, rest2, f, w
-      real(wp) :: q, length, sign
+      real(wp) :: length(size(k))
+      ! real and imaginary parts of y, a and b
+      real(wp), dimension(size(k)) :: yr, yi, ar, ai, br, bi
+      real(wp) :: q, up_r, up_i, down_r, down_i, over_a, over_b, over
+      real(wp) :: square_r, square_i
+      complex(wp) :: a, b
+      integer :: i
 
       q = (1.0_wp - 2.0_wp*nu)/(2.0_wp*(1.0_wp - nu))
-      y = (p/k)**2
-      a = root(1.0_wp + q*y)
-      b = root(1.0_wp + y)
+      square_r = real(p, wp)**2 - aimag(p)**2
+      square_i = 2.0_wp*real(p, wp)*aimag(p)
+      do i = 1, size(k)
+         yr(i) = square_r/k(i)**2
+         yi(i) = square_i/k(i)**2
+      end do
+      call roots(1.0_wp + q*yr, q*yi, ar, ai)
+      call roots(1.0_wp + yr, yi, br, bi)
       ! D = S - T = (S^2 - T^2)/(S + T) = y poly/(S + T), and L - 1 with its factor y
-      poly = 16.0_wp*(1.0_wp - q) + y*(24.0_wp - 16.0_wp*q + y*(8.0_wp + y))
-      excess = y*(2.0_wp*(1.0_wp - q)*(4.0_wp*q/(1.0_wp + a) + 4.0_wp/(1.0_wp + b) &
-         + a*(4.0_wp + y) + 4.0_wp*q*b) - (24.0_wp - 16.0_wp*q) - y*(8.0_wp + y))/poly
+      do i = 1, size(k)
+         over_a = 4.0_wp*q/((1.0_wp + ar(i))**2 + ai(i)**2)
+         over_b = 4.0_wp/((1.0_wp + br(i))**2 + bi(i)**2)
+         ! 4 q/(1 + a) + 4/(1 + b) + a (4 + y) + 4 q b
+         up_r = over_a*(1.0_wp + ar(i)) + over_b*(1.0_wp + br(i)) + ar(i)*(4.0_wp + yr(i)) &
+            - ai(i)*yi(i) + 4.0_wp*q*br(i)
+         up_i = -over_a*ai(i) - over_b*bi(i) + ai(i)*(4.0_wp + yr(i)) + ar(i)*yi(i) &
+            + 4.0_wp*q*bi(i)
+         ! 8 y + y^2
+         square_r = yr(i)*(8.0_wp + yr(i)) - yi(i)**2
+         square_i = yi(i)*(8.0_wp + 2.0_wp*yr(i))
+         up_r = 2.0_wp*(1.0_wp - q)*up_r - (24.0_wp - 16.0_wp*q) - square_r
+         up_i = 2.0_wp*(1.0_wp - q)*up_i - square_i
+         down_r = poly_real(yr(i), yi(i), square_r, square_i)
+         down_i = poly_imaginary(yr(i), yi(i), square_r, square_i)
+         over = 1.0_wp/(down_r**2 + down_i**2)
+         square_r = (up_r*down_r + up_i*down_i)*over
+         square_i = (up_i*down_r - up_r*down_i)*over
+         excess(i) = cmplx(yr(i)*square_r - yi(i)*square_i, yr(i)*square_i + yi(i)*square_r, wp)
+      end do
       if (base == base_half_space) return
 
       length = k*thickness
       if (base == base_free) length = 0.5_wp*length
+      do i = 1, size(k)
+         if (2.0_wp*length(i)*min(ar(i), br(i)) > far) cycle
+         a = cmplx(ar(i), ai(i), wp)
+         b = cmplx(br(i), bi(i), wp)
+         excess(i) = excess(i) + (1.0_wp + excess(i)) &
+            *layer_factor(base, q, length(i), cmplx(yr(i), yi(i), wp), a, b)
+      end do
+
+   contains
+
+      !> Real part of 16 (1 - q) + y (24 - 16 q + 8 y + y^2)
+      elemental function poly_real(yr, yi, square_r, square_i) result(value)
+         !> Parts of y and of 8 y + y^2
+         real(wp), intent(in) :: yr, yi, square_r, square_i
+         real(wp) :: value
+
+         value = 16.0_wp*(1.0_wp - q) + yr*(24.0_wp - 16.0_wp*q + square_r) - yi*square_i
+      end function poly_real
+
+      !> Its imaginary part
+      elemental function poly_imaginary(yr, yi, square_r, square_i) result(value)
+         !> Parts of y and of 8 y + y^2
+         real(wp), intent(in) :: yr, yi, square_r, square_i
+         real(wp) :: value
+
+         value = yi*(24.0_wp - 16.0_wp*q + square_r) + yr*square_i
+      end function poly_imaginary
+   end subroutine wave_responses
+
+   !> Factor of a layer on the L of the half space, less 1
+   elemental function layer_factor(base, q, length, y, a, b) result(ratio)
+      !> One of the `base_*` constants of a layer
+      integer, intent(in) :: base
+      !> Square of the ratio of wave speeds, and length k H or k H/2
+      real(wp), intent(in) :: q, length
+      !> The variables y, a and b
+      complex(wp), intent(in) :: y, a, b
+      complex(wp) :: ratio
+
+      complex(wp) :: s, t, d, kappa, even, less, ta, tb, more
+      ! of the wave that reaches farther, 1, and the other, 2: rate, exp(-2 length rate) and 1 less
+      ! that; f and w make up the difference of their tangents
+      complex(wp) :: rate, e1, e2, rest1, rest2, f, w
+      real(wp) :: sign
+
       sign = 1.0_wp
       if (real(b, wp) < real(a, wp)) sign = -1.0_wp
       rate = a
       if (sign < 0.0_wp) rate = b
-      if (2.0_wp*length*real(rate, wp) > far) return
       rest1 = decay(2.0_wp*length*rate)
       w = decay(length*sign*(1.0_wp - q)*y/(a + b))
       e1 = 1.0_wp - rest1
@@ -118,10 +209,10 @@ contains
          less = 2.0_wp*e2/(1.0_wp + e2)
       end if
 
-      ! the factor of the layer less 1, with more = T (tb - ta)
+      ! with more = T (tb - ta)
       s = (2.0_wp + y)**2
       t = 4.0_wp*a*b
-      d = y*poly/(s + t)
+      d = y*(16.0_wp*(1.0_wp - q) + y*(24.0_wp - 16.0_wp*q + y*(8.0_wp + y)))/(s + t)
       more = t*sign*f*w*(2.0_wp - w)
       select case (base)
       case (base_free)
@@ -133,26 +224,25 @@ contains
          even = f*((s + 0.25_wp*t**2)*w**2 + 2.0_wp*(1.0_wp - w)*(y + 2.0_wp*kappa)**2)
          ratio = (d*(more/t - kappa*less) + even)/(kappa*d - even)
       end select
-      excess = excess + (1.0_wp + excess)*ratio
-   end function wave_response
+   end function layer_factor
 
-   !> Square root with a positive real part, faster than that of complex numbers
-   elemental function root(z)
-      !> Number, not on the negative real axis
-      complex(wp), intent(in) :: z
-      complex(wp) :: root
+   !> Square roots with a positive real part, not of numbers on the negative real axis
+   pure subroutine roots(x, y, real_part, imaginary_part)
+      !> Real and imaginary parts of the numbers
+      real(wp), intent(in) :: x(:), y(:)
+      !> Those of the roots
+      real(wp), intent(out) :: real_part(:), imaginary_part(:)
 
-      real(wp) :: part
+      real(wp) :: large, small
+      integer :: i
 
-      associate (x => real(z, wp), y => aimag(z))
-         part = sqrt(0.5_wp*(sqrt(x**2 + y**2) + abs(x)))
-         if (x >= 0.0_wp) then
-            root = cmplx(part, 0.5_wp*y/part, wp)
-         else
-            root = cmplx(0.5_wp*abs(y)/part, merge(part, -part, y >= 0.0_wp), wp)
-         end if
-      end associate
-   end function root
+      do i = 1, size(x)
+         large = sqrt(0.5_wp*(sqrt(x(i)**2 + y(i)**2) + abs(x(i))))
+         small = 0.5_wp*abs(y(i))/large
+         real_part(i) = merge(large, small, x(i) >= 0.0_wp)
+         imaginary_part(i) = sign(merge(small, large, x(i) >= 0.0_wp), y(i))
+      end do
+   end subroutine roots
 
    !> 1 - exp(-z), to full accuracy for small z too
    elemental function decay(z)

@@ -39,11 +39,16 @@ module vcor_solver_coupled_kernel
       type(row_t) :: row
       !> Weights of the springs, shape (0:steps-1) [m/N per m]
       real(wp), allocatable :: local(:)
-      !> Weights of the waves of an elastic half space, which pass, from the hats to the axis [m/N],
-      !> that of lag n from hat j at (j, lags - n), shape (hats, lags); unallocated without waves
-      real(wp), allocatable :: passing(:, :)
-      !> Speed of its shear waves [m/s]; 0 without waves
-      real(wp) :: speed = 0.0_wp
+      !> Weights of the waves of an elastic half space, which pass, from the hats to two of their
+      !> nodes, the axis and `beside` [m/N], that of lag n from hat j at (j, lags - n), shape
+      !> (hats, lags, 2); unallocated without waves
+      real(wp), allocatable :: passing(:, :, :)
+      !> A node of the hats near the axis
+      integer :: beside = 2
+      !> Part of the striker in the local compliance
+      real(wp) :: striker_share = 0.0_wp
+      !> Poisson's ratio of the plate
+      real(wp) :: poisson_ratio = 0.0_wp
       !> Whether the springs have a memory: more than their first weight counts
       logical :: remembers = .false.
       !> Whether hats act on each other
@@ -56,7 +61,7 @@ module vcor_solver_coupled_kernel
       !> What the face is: its base, Poisson's ratio, thickness and moduli at all frequencies
       integer, private :: base = -1
       logical, private :: has_waves = .false.
-      real(wp), private :: poisson_ratio = 0.0_wp, thickness = 0.0_wp
+      real(wp), private :: thickness = 0.0_wp
       complex(wp), allocatable, private :: modulus(:), compliance(:), p(:)
    contains
       procedure :: is_for
@@ -131,8 +136,7 @@ contains
       ! the part of the first weight from which the springs are elastic
       real(wp), parameter :: negligible = 1.0e-7_wp
       complex(wp) :: s(0:mesh%steps/2)
-      real(wp) :: parts(1, 2*(mesh%steps/2 + 1)), found(1, mesh%steps)
-      real(wp), allocatable :: transform(:, :)
+      real(wp) :: found(1, 0:mesh%steps - 1)
 
       self%mesh = mesh
       self%base = face%base
@@ -144,120 +148,141 @@ contains
       self%compliance = face%local_compliance(s)
       self%p = face%per_shear_speed(s)
       call new_row(self%row, mesh%radius, mesh%hats, mesh%springs)
-      transform = weights(mesh%steps)
-      parts(1, 1::2) = real(self%compliance, wp)
-      parts(1, 2::2) = aimag(self%compliance)
-      found = matmul(parts, transform)
+      found = weights(reshape(self%compliance, [1, size(s)]))
       allocate (self%local(0:mesh%steps - 1), source=found(1, :))
       self%remembers = any(abs(self%local(1:)) > negligible*self%local(0))
-      call add_response(self, face, s, transform, error)
+      call add_response(self, face, s, error)
    end subroutine new_kernel
 
-   !> Weights of the hats
-   subroutine add_response(self, face, s, transform, error)
+   !> Weights of the hats: with g(k), the cosine transforms of the functions dual to the hats, the
+   !> response of hat j to hat i is
+   !>
+   !>     C_ij(s) = (1/(pi Q'(s))) int_0^oo (L(k, s) - 1) g_i(k) g_j(k) dk + c(s)
+   subroutine add_response(self, face, s, error)
       type(kernel_t), intent(inout) :: self
       type(face_t), intent(in) :: face
       !> Laplace variables [1/s], shape (0:steps/2)
       complex(wp), intent(in) :: s(0:)
-      !> Matrix of the inverse transform, of `weights`
-      real(wp), intent(in) :: transform(:, 0:)
       type(error_t), allocatable, intent(out) :: error
 
-      ! part of the window in which waves have passed; the number of lags is a multiple of `turn`
-      integer, parameter :: part = 4, turn = 4
-      complex(wp), allocatable :: excess(:)
-      real(wp), allocatable :: k(:), weight(:), dual(:, :), pairs(:, :), parts(:, :), found(:, :)
-      complex(wp), allocatable :: passing(:)
-      complex(wp) :: value
+      complex(wp), allocatable :: response(:, :), excess(:, :), passing(:)
+      real(wp), allocatable :: k(:), share(:), dual(:, :), products(:, :), weight(:, :)
       integer :: hats, steps, i, j, l, n
 
       hats = self%mesh%hats
       steps = self%mesh%steps
       allocate (self%now(hats, hats), source=0.0_wp)
-      allocate (found(hats*(hats + 1)/2, 2*size(s)), source=0.0_wp)
+      allocate (response(pair(hats, hats), 0:steps/2), source=(0.0_wp, 0.0_wp))
       if (face%has_response()) then
-         if (face%has_waves) then
-            self%speed = self%rate()/real(face%per_shear_speed(cmplx(self%rate(), kind=wp)), wp)
-            l = turn*((steps - 1)/(part*turn) + 1)
-            allocate (passing, source=nodes(l, 1.0_wp/self%rate())/self%speed)
-         else
-            allocate (passing(0))
-         end if
-         call wavenumbers(face, [self%p, passing], self%mesh%radius, self%row%node(2), k, weight)
-         allocate (dual(hats, size(k)), excess(size(k)), pairs(size(found, 1), size(k)), &
-            parts(size(k), 2*size(s)))
+         passing = passing_nodes(self, face)
+         call wavenumbers(face, [self%p, passing], self%mesh%radius, self%row%node(2), k, share)
+         share = share/pi
+         allocate (dual(hats, size(k)), products(size(response, 1), size(k)), &
+            excess(size(k), 0:steps/2))
          call transforms(self%row%node, k, dual, error)
          if (allocated(error)) return
-         do i = 1, size(k)
-            n = 0
+         do n = 1, size(k)
             do j = 1, hats
-               pairs(n + 1:n + j, i) = dual(:j, i)*(dual(j, i)*weight(i)/pi)
-               n = n + j
+               products(pair(1, j):pair(j, j), n) = share(n)*dual(j, n)*dual(:j, n)
             end do
          end do
-         do l = 0, size(s) - 1
-            if (l == 0 .or. face%has_waves) call face%response(k, self%p(l + 1), &
-               excess)
-            parts(:, 2*l + 1) = real(excess, wp)
-            parts(:, 2*l + 2) = aimag(excess)
+         do l = 0, steps/2
+            if (l == 0 .or. face%has_waves) then
+               call face%response(k, self%p(l + 1), excess(:, l))
+            else
+               excess(:, l) = excess(:, 0)
+            end if
          end do
-         found = matmul(pairs, parts)
-         do l = 0, size(s) - 1
-            do n = 1, size(found, 1)
-               value = cmplx(found(n, 2*l + 1), found(n, 2*l + 2), wp)/self%modulus(l + 1)
-               found(n, 2*l + 1) = real(value, wp)
-               found(n, 2*l + 2) = aimag(value)
-            end do
+         response = cmplx(matmul(products, real(excess, wp)), matmul(products, aimag(excess)), wp)
+         do l = 0, steps/2
+            response(:, l) = response(:, l)/self%modulus(l + 1)
          end do
-         if (face%has_waves) call add_passing(self, face, k, weight, dual, passing)
+         if (face%has_waves) call add_passing(self, face, k, share, dual, passing)
       end if
-      do l = 0, size(s) - 1
-         value = face%drift(s(l))
-         found(:, 2*l + 1) = found(:, 2*l + 1) + real(value, wp)
-         found(:, 2*l + 2) = found(:, 2*l + 2) + aimag(value)
+      do l = 0, steps/2
+         response(:, l) = response(:, l) + face%drift(s(l))
       end do
-      self%has_response = any(abs(found) > 0.0_wp)
+      self%has_response = any(abs(response) > 0.0_wp)
       if (.not. self%has_response) return
-      parts = matmul(found, transform)
-      allocate (self%later(hats*(steps - 1), hats))
-      n = 0
+      allocate (weight(size(response, 1), 0:steps - 1), self%later(hats*(steps - 1), hats))
+      weight = weights(response)
       do j = 1, hats
-         do i = 1, j
-            n = n + 1
-            self%now(i, j) = parts(n, 1)
-            self%now(j, i) = parts(n, 1)
-            do l = 1, steps - 1
-               self%later(i + hats*(steps - 1 - l), j) = parts(n, l + 1)
-               self%later(j + hats*(steps - 1 - l), i) = parts(n, l + 1)
+         do i = 1, hats
+            self%now(i, j) = weight(pair(i, j), 0)
+         end do
+         do n = 1, steps - 1
+            do i = 1, hats
+               self%later(i + hats*(steps - 1 - n), j) = weight(pair(i, j), n)
             end do
          end do
       end do
    end subroutine add_response
 
-   !> Weights of the waves that pass: of an elastic half space as stiff as the plate in a step
-   subroutine add_passing(self, face, k, weight, dual, p)
+   !> Place of an element of a symmetric matrix of which the upper triangle is stored by columns
+   pure function pair(i, j)
+      !> Row and column
+      integer, intent(in) :: i, j
+      integer :: pair
+
+      pair = min(i, j) + max(i, j)*(max(i, j) - 1)/2
+   end function pair
+
+   !> Laplace variables over the speed of shear waves at which the waves that pass are needed: of an
+   !> elastic half space as stiff as the plate in a step, for a quarter of the window. They cross
+   !> what is left of the contact long before
+   pure function passing_nodes(self, face) result(p)
+      type(kernel_t), intent(in) :: self
+      type(face_t), intent(in) :: face
+      !> The variables [1/m], none without waves
+      complex(wp), allocatable :: p(:)
+
+      integer, parameter :: part = 4, turn = 4
+      integer :: lags
+
+      allocate (p(0))
+      if (.not. face%has_waves) return
+      lags = turn*((self%mesh%steps - 1)/(part*turn) + 1)
+      p = nodes(lags, 1.0_wp/self%rate()) &
+         *(real(face%per_shear_speed(cmplx(self%rate(), kind=wp)), wp)/self%rate())
+   end function passing_nodes
+
+   !> Weights of the waves that pass
+   subroutine add_passing(self, face, k, share, dual, p)
       type(kernel_t), intent(inout) :: self
       type(face_t), intent(in) :: face
-      !> Wavenumbers [1/m] and their weights [1/m]
-      real(wp), intent(in) :: k(:), weight(:)
+      !> Wavenumbers and their weights over pi [1/m]
+      real(wp), intent(in) :: k(:), share(:)
       !> Transforms of the functions dual to the hats, shape (hats, size(k))
       real(wp), intent(in) :: dual(:, :)
-      !> Laplace variables over the speed of its shear waves [1/m], for an even number of lags
+      !> Laplace variables over the speed of its shear waves [1/m], of `passing_nodes`
       complex(wp), intent(in) :: p(:)
 
-      complex(wp) :: excess(size(k))
-      real(wp) :: parts(size(k), 2*size(p)), share(size(k))
-      integer :: l, lags
+      ! part of the row at which `beside` stands, of its elements by their grading an eighth of the
+      ! radius: near enough for the curvature on the axis
+      real(wp), parameter :: part = 0.25_wp
+      complex(wp) :: excess(size(k)), response(2*size(dual, 1), size(p)), rate
+      real(wp) :: products(2*size(dual, 1), size(k)), stiffness
+      integer :: hats, l, lags, n
 
-      lags = 2*(size(p) - 1)
-      share = dual(1, :)*weight/(pi*real(face%plate_modulus(cmplx(self%rate(), kind=wp)), wp))
+      hats = size(dual, 1)
+      self%beside = 1 + ceiling(part*real(hats - 1, wp))
+      rate = cmplx(self%rate(), kind=wp)
+      stiffness = real(face%plate_modulus(rate), wp)
+      self%striker_share = max(0.0_wp, 1.0_wp &
+         - 1.0_wp/(stiffness*real(face%local_compliance(rate), wp)))
+      do n = 1, size(k)
+         products(:hats, n) = (share(n)/stiffness*dual(1, n))*dual(:, n)
+         products(hats + 1:, n) = (share(n)/stiffness*dual(self%beside, n))*dual(:, n)
+      end do
       do l = 1, size(p)
          call face%half_space_response(k, p(l), excess)
-         parts(:, 2*l - 1) = share*real(excess, wp)
-         parts(:, 2*l) = share*aimag(excess)
+         response(:, l) = cmplx(matmul(products, real(excess, wp)), &
+            matmul(products, aimag(excess)), wp)
       end do
-      self%passing = matmul(matmul(dual, parts), weights(lags))
-      self%passing = self%passing(:, lags:1:-1)
+      lags = 2*(size(p) - 1)
+      allocate (self%passing(hats, lags, 2))
+      self%passing = reshape(weights(response), [hats, lags, 2], order=[1, 3, 2])
+      self%passing = self%passing(:, lags:1:-1, :)
    end subroutine add_passing
 
    !> Nodes and weights of the quadrature in k: panels of Gauss nodes, short where the response of

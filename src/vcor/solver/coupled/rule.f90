@@ -46,31 +46,38 @@ contains
       end do
    end function nodes
 
-   !> Weights of responses given at the nodes: the inverse discrete transform as a matrix product
-   pure function weights(steps) result(matrix)
-      !> Number of steps, a multiple of 4
-      integer, intent(in) :: steps
-      !> In rows real and imaginary parts at the nodes in turn, in columns W_0, W_1, ...; shape
-      !> (2 (steps/2 + 1), 0:steps-1)
-      real(wp) :: matrix(2*(steps/2 + 1), 0:steps - 1)
+   !> Weights of responses given at the nodes, by the inverse discrete transform
+   !>
+   !>     W_n = |z|^-n/N [C_0 + C_{N/2} + 2 sum_l Re(C_l exp(2 pi i l n/N))],   0 < l < N/2
+   pure function weights(response) result(weight)
+      !> Responses C at the nodes, shape (:, 0:steps/2)
+      complex(wp), intent(in) :: response(:, 0:)
+      !> W_0, W_1, ..., shape (:, 0:steps-1)
+      real(wp) :: weight(size(response, 1), 0:2*ubound(response, 2) - 1)
 
-      real(wp) :: cosine(0:steps - 1), factor
-      integer :: l, n, phase
+      ! real and imaginary part of what a response is multiplied by, negative for the latter
+      real(wp), allocatable :: cosine(:, :), sine(:, :)
+      real(wp) :: circle(0:2*ubound(response, 2) - 1), factor
+      integer :: l, n, phase, steps
 
+      steps = 2*ubound(response, 2)
       do l = 0, steps - 1
-         cosine(l) = cos(2.0_wp*pi*real(l, wp)/real(steps, wp))
+         circle(l) = cos(2.0_wp*pi*real(l, wp)/real(steps, wp))
       end do
+      allocate (cosine(0:steps/2, 0:steps - 1), sine(0:steps/2, 0:steps - 1))
       do n = 0, steps - 1
-         factor = wrap**(-real(n, wp)/real(steps, wp))/real(steps, wp)
+         factor = 2.0_wp*wrap**(-real(n, wp)/real(steps, wp))/real(steps, wp)
+         phase = 0
          do l = 0, steps/2
-            phase = modulo(l*n, steps)
-            matrix(2*l + 1, n) = factor*cosine(phase)
+            cosine(l, n) = factor*circle(phase)
             ! the sine is the cosine a quarter later
-            matrix(2*l + 2, n) = factor*cosine(modulo(phase - steps/4, steps))
-            if (l > 0 .and. 2*l < steps) matrix(2*l + 1:2*l + 2, n) = &
-               2.0_wp*matrix(2*l + 1:2*l + 2, n)
+            sine(l, n) = factor*circle(modulo(phase - steps/4, steps))
+            phase = modulo(phase + n, steps)
          end do
+         cosine(0, n) = 0.5_wp*cosine(0, n)
+         cosine(steps/2, n) = 0.5_wp*cosine(steps/2, n)
       end do
+      weight = matmul(real(response, wp), cosine) + matmul(aimag(response), sine)
    end function weights
 
 end module vcor_solver_coupled_rule
