@@ -393,7 +393,10 @@ contains
       if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
       if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
       self%surroundings%yield_strength = yield_strength(1)
-      call self%surroundings%follow(self%plate%material%poisson_ratio())
+      self%surroundings%density = self%plate%material%density()
+      self%surroundings%base = self%base
+      if (self%base == base_free .and. .not. self%half_thickness > 0.0_wp) &
+         self%surroundings%base = base_half_space
    end subroutine update_surroundings
 
    !> Build contact modulus, plate and face of the impact
