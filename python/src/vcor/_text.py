@@ -64,7 +64,7 @@ GONE = {"half_space_loss": "wave_loss", "bending_loss": "wave_loss"}
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """Advice for a message about an unknown name: what took its place, or a known one that is like it."""
+    """What to add to a message about an unknown name: its successor, or a known one like it."""
     if word in GONE:
         return f"; its place has been taken by {GONE[word]}"
     found = difflib.get_close_matches(word, list(known), 1)
