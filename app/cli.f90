@@ -125,6 +125,10 @@ contains
       if (.not. contains_word(commands(), request%command)) then
          name = missing_package(request%command)
          if (request%command == 'merge') name = 'vcor merge and --shard have gone; '//instead
+         if (name == '' .and. index(request%command, '.nml', back=.true.) &
+            == max(len(request%command) - 3, 1)) name = "unknown command '" &
+            //printable(request%command)//"'; did you mean vcor run " &
+            //printable(request%command)//'?'
          if (name == '') name = "unknown command '"//printable(request%command)//"'; " &
             //suggestion(request%command, commands()//' '//package_names()//' --help --version')
          call raise(error, error_usage, name)
@@ -185,6 +189,9 @@ contains
          end if
          if (allocated(error)) return
          value = words(i)%text(merge(len(words(i)%text), mark, flag) + 1:)
+         if (.not. flag .and. i < size(words)) call refuse_blank(name, value, &
+            words(i + 1)%text, error)
+         if (allocated(error)) return
          if (.not. flag .and. len_trim(value) == 0) then
             call raise(error, error_usage, 'option '//name//' needs a value')
          else if (name /= '--set' .and. control_in(value) /= '') then
@@ -197,6 +204,38 @@ contains
       end do
       call check_request(request, error)
    end subroutine parse
+
+   !> Refuse a value that a blank has cut, such as `--print cor, contact_time`: its second part
+   !> would be the name of a file
+   subroutine refuse_blank(option, value, next, error)
+      character(len=*), intent(in) :: option, value
+      !> Word after the value
+      character(len=*), intent(in) :: next
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: meant
+
+      if (len_trim(value) == 0) return
+      if (option == '--print' .and. (ends_with(value, ',') .or. index(next, ',') == 1)) then
+         meant = 'cor,contact_time'
+      else if (option == '--set' .and. (ends_with(value, '=') .or. index(next, '=') == 1)) then
+         meant = 'impact.velocity=2'
+      else
+         return
+      end if
+      call raise(error, error_usage, option//": found a blank between '"//printable(trim(value)) &
+         //"' and '"//printable(next)//"', expected none, such as "//option//' '//meant)
+   end subroutine refuse_blank
+
+   !> Whether a text ends with a letter, blanks apart
+   pure function ends_with(text, letter) result(does)
+      character(len=*), intent(in) :: text
+      character, intent(in) :: letter
+      logical :: does
+
+      does = index(text, letter, back=.true.) == max(len_trim(text), 1)
+   end function ends_with
 
    !> Apply an option to a request
    subroutine apply(request, option, value, error)

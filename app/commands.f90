@@ -45,7 +45,7 @@ module vcor_app_commands
       //"the disk is full, the same command with `--resume` solves the points that " &
       //"remain, and writes the same files as an uninterrupted run. Without `--resume` a " &
       //"sweep that has a STEM.part does not start. A STEM.part of another case or " &
-      //"version is refused."), &
+      //"version, with other columns or with a wrong bit is refused."), &
       entry_t("", "The screen names the mechanics of an impact and, if they are not exact, shows " &
       //"the result of the exact ones (law 'receding', pair 'series', and waves 'body' where the " &
       //"case has waves, or a thickness and a free plate). It lists the measures of validity " &
@@ -53,9 +53,9 @@ module vcor_app_commands
       //"for a sweep, how many points that concerns, by which measure, and where. With " &
       //"`--print`, one line on stderr lists them. Numbers that no material has (a density of " &
       //"7.8 kg/m3) cause a warning."), &
-      entry_t("", "Results of the same names are replaced. A file is written as NAME.tmp and " &
-      //"then renamed, so there is always the old file or the new one. The next run replaces a " &
-      //"NAME.tmp that a killed one has left."), &
+      entry_t("", "Results of the same names are replaced. A file is written as NAME.vcor.tmp " &
+      //"and then renamed, so there is always the old file or the new one. The next run replaces " &
+      //"a NAME.vcor.tmp that a killed one has left."), &
       entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &
       //"among ranks."), &
       entry_t("example", "vcor run examples/paper/sls.nml"), &

@@ -23,6 +23,8 @@ module vcor_app_help
 
    !> End of a line
    character(len=*), parameter :: nl = new_line("a")
+   !> What the program does not have, of which users ask
+   character(len=*), parameter :: not_there = "tangential rolling oblique"
    !> Longest line of a page
    integer, parameter :: width = 86
    !> Column of the meaning of an option, a key or a column
@@ -73,6 +75,16 @@ contains
          if (text /= "") return
          if (missing_package(topic) /= "") then
             call raise(error, error_usage, missing_package(topic))
+            return
+         end if
+         if (contains_word(not_there, topic)) then
+            call raise(error, error_usage, "no help on '"//printable(topic)//"': vcor has normal " &
+               //"impacts, without friction and spin")
+            return
+         end if
+         if (topic == "hollow") then
+            call raise(error, error_usage, "no help on 'hollow': a hollow sphere has its mass in " &
+               //"sphere.mass; its contact is that of a solid one")
             return
          end if
          ! too many words to list, but they can be searched for a similar one

@@ -2,7 +2,7 @@
 module vcor_app_job
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : files_t, name_files
-   use vcor_app_screen, only : significant
+   use vcor_rounded, only : significant
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, key_t, real_key
    use vcor_case_checks, only : validate
@@ -88,6 +88,23 @@ contains
       end do
    end subroutine prepare
 
+   !> Add to the error of a file that is no case which command reads it, by the end of its name
+   subroutine name_command(path, error)
+      character(len=*), intent(in) :: path
+      !> The error, of code `error_input` where the file has been read
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (error%code /= error_input) return
+      select case (path(max(index(path, '.', back=.true.), 1):))
+      case ('.h5')
+         error%message = error%message//'; vcor plot draws files of results'
+      case ('.xlsx')
+         error%message = error%message//'; vcor fit, master, identify and table read data'
+      case default
+         continue
+      end select
+   end subroutine name_command
+
    !> Read the files of a request: the cases, each completed by files of materials after it
    subroutine read_cases(request, jobs, error)
       type(request_t), intent(in) :: request
@@ -101,7 +118,10 @@ contains
 
       do i = 1, size(cases)
          call read_case(cases(i), request%files(i)%text, error)
-         if (allocated(error)) return
+         if (allocated(error)) then
+            call name_command(request%files(i)%text, error)
+            return
+         end if
          completes(i) = cases(i)%is_materials()
       end do
       if (size(cases) > 1 .and. completes(1)) then

@@ -10,7 +10,7 @@ program vcor_main
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
    use vcor_app_run, only : run_impact
-   use vcor_app_screen, only : short
+   use vcor_rounded, only : short
    use vcor_app_sweep, only : run_sweep
    use vcor_app_validity, only : warn_of_input
    use vcor_app_verify, only : verify_case, verify_program

@@ -4,7 +4,8 @@ module vcor_app_material
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : write_files
    use vcor_app_job, only : find_window, job_t, window_t
-   use vcor_app_screen, only : heading, line, short, significant
+   use vcor_app_screen, only : heading, line
+   use vcor_rounded, only : short, significant
    use vcor_case_printed, only : case_text
    use vcor_case_body, only : material_of_case
    use vcor_error, only : error_t

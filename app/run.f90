@@ -3,15 +3,17 @@ module vcor_app_run
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : report, short
-   use vcor_app_validity, only : about_numbers, beyond_data, joined, measures_remark, &
-      measures_report, mechanics_of, solve_exact, warn_of_bands
+   use vcor_app_screen, only : report
+   use vcor_app_validity, only : about_numbers, measures_remark, &
+      measures_report, mechanics_of, solve_exact, warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
+   use vcor_io_coverage, only : beyond_table
    use vcor_io_file, only : write_stdout
+   use vcor_rounded, only : short
    use vcor_text, only : integer_text
    use vcor_io_results, only : history_table, summary_table
    use vcor_io_table, only : table_t
@@ -20,6 +22,7 @@ module vcor_app_run
    use vcor_sweep_quantity, only : new_summary, row_of, summary_t
    use vcor_sweep_points, only : solve_point, worker_t
    use vcor_verify_models, only : model_t
+   use vcor_words, only : joined
    implicit none
    private
 
@@ -51,7 +54,7 @@ contains
       if (allocated(error)) return
       call solve_point(job%sweep, 1, worker, outcome, error)
       call summary%put(1, row_of(outcome))
-      if (.not. allocated(error)) call warn_of_bands(job%case, job%sweep%grid, &
+      if (.not. allocated(error)) call warn_of_data(job%case, job%sweep%grid, &
          summary)
       allocate (tables(merge(2, 1, job%files%history)))
       call summary_table(tables(1), title, completed, job%sweep%grid, summary)
@@ -167,9 +170,9 @@ contains
       if (outcome%status /= contact_separated) return
       sphere = job%case%material_of('sphere')
       plate = job%case%material_of('plate')
-      text = beyond_data(job%case, plate, trim(merge('both bodies', 'the plate  ', &
+      text = beyond_table(job%case, plate, trim(merge('both bodies', 'the plate  ', &
          plate == sphere)), [outcome%contact_time])
-      if (plate /= sphere) text = joined(beyond_data(job%case, sphere, 'the sphere', &
+      if (plate /= sphere) text = joined(beyond_table(job%case, sphere, 'the sphere', &
          [outcome%contact_time]), text)
    end function uncovered
 

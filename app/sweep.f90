@@ -6,24 +6,25 @@ module vcor_app_sweep
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : blocks, coordinates, digits_of_level, heading, padded, &
-      plain_number, right, significant
-   use vcor_app_validity, only : about_numbers, joined, exact_points, points_remark, &
-      points_report, warn_of_bands
-   use vcor_case_grid, only : grid_t
+   use vcor_app_screen, only : blocks, digits_of_level, heading, padded, right
+   use vcor_app_validity, only : about_numbers, exact_points, points_remark, &
+      points_report, warn_of_data
+   use vcor_case_grid, only : coordinates, grid_t
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_validity, only : level_none
    use vcor_io_file, only : stderr_is_terminal, write_stdout, write_terminal
-   use vcor_io_restart, only : create_restart, hash_of, open_restart, restart_t
+   use vcor_rounded, only : plain_number, significant
+   use vcor_io_restart, only : crc32, create_restart, hash_of, open_restart, restart_t
    use vcor_text, only : integer_text
+   use vcor_words, only : joined
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
    use vcor_sweep_mpi, only : differs, largest_of_ranks, share_error, this_rank
    use vcor_sweep_points, only : clock, default_threads, failures_t, monitor_t, solve_points
-   use vcor_sweep_quantity, only : new_summary, point_pending, quantities, quantity_place, &
-      quantity_t, status_name, summary_t
+   use vcor_sweep_quantity, only : new_summary, point_pending, quantities, quantity_names, &
+      quantity_place, quantity_t, status_name, summary_t
    implicit none
    private
 
@@ -81,7 +82,8 @@ contains
       type(watch_t) :: watch
 
       watch%hash = hash_of(job%case)
-      if (differs(watch%hash)) then
+      ! ranks exchange rows of numbers: versions with other columns must not mix
+      if (differs(crc32(quantity_names(), watch%hash))) then
          call raise(error, error_input, job%case%source//': not all ranks read the same case, or ' &
             //'have the same version of vcor')
          return
@@ -137,7 +139,7 @@ contains
       character(len=:), allocatable :: files, less, title, validity
 
       call end_of_sweep(job, failures, error)
-      call warn_of_bands(job%case, job%sweep%grid, summary)
+      call warn_of_data(job%case, job%sweep%grid, summary)
       if (size(request%names) > 0) then
          validity = points_remark(job%sweep%grid, summary)
       else

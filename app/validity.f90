@@ -2,24 +2,19 @@
 !> the number of points of a sweep with each; impacts that rely on a material beyond the data of its
 !> fit; and implausible input
 module vcor_app_validity
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_screen, only : coordinates, percent, plain_number, short, significant
+   use vcor_rounded, only : percent, plain_number, short, significant
    use vcor_case_address, only : swept_addresses
-   use vcor_case_case, only : address_t, case_t, operator(==)
-   use vcor_case_grid, only : grid_t
-   use vcor_case_identified, only : find_reliance, reliance_t
-   use vcor_case_body, only : material_of_case
+   use vcor_case_case, only : case_t, operator(==)
+   use vcor_case_grid, only : coordinates, grid_t
    use vcor_case_checks, only : implausible_numbers, note_length
    use vcor_case_reading, only : reading_t
-   use vcor_error, only : error_t
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_validity, only : judged, level_caution, level_good, level_of, level_outside, &
       levels, surroundings_t, thresholds
-   use vcor_io_data_file, only : data_file
+   use vcor_io_coverage, only : find_remarks, outcomes_t, remark_length
    use vcor_kinds, only : pi, wp
-   use vcor_material_type, only : material_t
    use vcor_sweep_points, only : sweep_t
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_number, only : real_text
@@ -29,7 +24,7 @@ module vcor_app_validity
    private
 
    public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
-      points_remark, exact_points, about_numbers, joined, warn_of_input, warn_of_bands, beyond_data
+      points_remark, exact_points, about_numbers, warn_of_input, warn_of_data
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -446,15 +441,6 @@ contains
       if (words /= '') text = case%source//': '//words
    end function about_numbers
 
-   !> Join two texts in one line; either may be empty
-   pure function joined(first, second) result(text)
-      character(len=*), intent(in) :: first, second
-      character(len=:), allocatable :: text
-
-      text = first//second
-      if (first /= '' .and. second /= '') text = first//'; '//second
-   end function joined
-
    !> Ranges of the parameters of some points
    function place_of(grid, least, most) result(text)
       type(grid_t), intent(in) :: grid
@@ -498,227 +484,21 @@ contains
       text = significant(value, 3, 0)
    end function brief
 
-   !> Warn on stderr of materials on which impacts rely beyond their data. Of a sweep the impacts
-   !> with the shortest and the longest contact are examined, which are affected first
-   subroutine warn_of_bands(case, grid, summary)
+   !> Warn on stderr of impacts that rely on what the data of the materials do not say
+   subroutine warn_of_data(case, grid, summary)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
 
-      integer :: items(2), i
+      character(len=remark_length), allocatable :: remarks(:)
+      integer :: i
 
-      items = [case%material_of('sphere'), case%material_of('plate')]
-      do i = 1, merge(1, 2, items(1) == items(2))
-         call warn_of_band(case, grid, summary, items(i))
-         call warn_of_table(case, grid, summary, items(i))
-         call warn_of_temperatures(case, grid, items(i))
+      call find_remarks(case, grid, outcomes_t(summary%status == contact_separated, &
+         summary%values(quantity_place('contact_time'))%reals, &
+         summary%values(quantity_place('cor'))%reals), size(grid%axes) > 0, remarks)
+      do i = 1, size(remarks)
+         write (error_unit, '(a)') 'vcor: warning: '//trim(remarks(i))
       end do
-   end subroutine warn_of_bands
-
-   !> Warn of contacts of a sweep that the data of a table do not cover; the report of a single
-   !> impact includes this. Data that a swept temperature shifts are left out
-   subroutine warn_of_table(case, grid, summary, item)
-      type(case_t), intent(in) :: case
-      type(grid_t), intent(in) :: grid
-      type(summary_t), intent(in) :: summary
-      integer, intent(in) :: item
-
-      character(len=:), allocatable :: name, words
-
-      if (size(grid%axes) == 0) return
-      if (case%given('material', 'shift', item) .and. any(swept_addresses(case) &
-         == case%address('impact', 'temperature'))) return
-      call case%get('material', 'name', name, item)
-      words = beyond_data(case, item, "'"//printable(name)//"'", &
-         pack(summary%values(quantity_place('contact_time'))%reals, &
-         summary%status == contact_separated))
-      if (words /= '') write (error_unit, '(a)') 'vcor: warning: '//case%source//': '//words
-   end subroutine warn_of_table
-
-   !> Message about contacts that the data of a table do not cover
-   function beyond_data(case, item, owner, contacts) result(text)
-      type(case_t), intent(in) :: case
-      !> Index of the material
-      integer, intent(in) :: item
-      !> Owner of the data, in words
-      character(len=*), intent(in) :: owner
-      !> Contact times [s]
-      real(wp), intent(in) :: contacts(:)
-      !> In words; empty if they do, or if the material is not a table
-      character(len=:), allocatable :: text
-
-      !> Share of the contact time from which on times matter; docs/materials.md has the errors
-      real(wp), parameter :: seen_from = 0.001_wp
-      character(len=*), parameter :: constant = ', where the modulus is taken as constant'
-      class(material_t), allocatable :: material
-      type(error_t), allocatable :: error
-      character(len=:), allocatable :: before, after
-      real(wp), allocatable :: times(:)
-      integer :: unseen
-
-      text = ''
-      if (data_file(case, item) == '' .or. size(contacts) == 0) return
-      call material_of_case(case, item, material, error)
-      if (allocated(error)) return
-      call case%get('material', 'times', times, item)
-      times = times*material%time_factor
-      before = ''
-      after = ''
-      associate (first => times(1), last => times(size(times)), shortest => minval(contacts), &
-                 longest => maxval(contacts), some => size(contacts) > 1)
-         unseen = count(contacts <= first)
-         if (first > seen_from*shortest) before = 'begin at '//short(first)//' s: ' &
-            //percent(min(1.0_wp, first/shortest), 'all')//' of the ' &
-            //trim(merge('shortest contact', 'contact         ', some))//' lies before'//constant
-         if (some .and. unseen > 0) before = 'begin at '//short(first)//' s: ' &
-            //integer_text(unseen)//' of '//integer_text(size(contacts)) &
-            //' contacts lie entirely before'//constant
-         if (last < longest) after = 'end at '//short(last)//' s: ' &
-            //percent(1.0_wp - last/longest)//' of the ' &
-            //trim(merge('longest contact', 'contact        ', some))//' lies after'//constant
-      end associate
-      if (before//after /= '') text = 'the data of '//owner//' ('//data_file(case, item)//') ' &
-         //joined(before, after)
-   end function beyond_data
-
-   !> Warn of temperatures beyond the data of the shift of a material
-   subroutine warn_of_temperatures(case, grid, item)
-      type(case_t), intent(in) :: case
-      type(grid_t), intent(in) :: grid
-      integer, intent(in) :: item
-
-      character(len=*), parameter :: keys(2) = [character(len=22) :: 'valid_temperature_from', &
-         'valid_temperature_to']
-      ! data of one temperature scatter by as much
-      real(wp), parameter :: same = 1.0_wp
-      type(address_t) :: address
-      character(len=:), allocatable :: name, lead, band
-      real(wp), allocatable :: temperatures(:)
-      real(wp) :: given, ends(2)
-      integer :: i, outside
-
-      address = case%address('impact', 'temperature')
-      given = case%number(address)
-      temperatures = pack([given], [.not. ieee_is_nan(given)])
-      do i = 1, size(grid%axes)
-         if (grid%axes(i)%address == address) temperatures = grid%axes(i)%values
-      end do
-      band = ''
-      ends = [-huge(given), huge(given)]
-      do i = 1, size(keys)
-         if (.not. case%given('material', trim(keys(i)), item)) cycle
-         call case%get('material', trim(keys(i)), ends(i), item)
-         if (band /= '') band = band//', '
-         band = band//trim(keys(i))//' '//kelvin(ends(i))
-      end do
-      outside = count(temperatures < ends(1) - same .or. temperatures > ends(2) + same)
-      if (outside == 0) return
-      call case%get('material', 'name', name, item)
-      lead = 'the temperature, '//kelvin(temperatures(1))//', lies'
-      if (size(temperatures) > 1) lead = integer_text(outside)//' of ' &
-         //integer_text(size(temperatures))//' temperatures lie'
-      write (error_unit, '(a)') 'vcor: warning: '//case%source//': '//lead &
-         //" outside of the data behind the shift of '"//printable(name)//"' ("//band//')'
-   end subroutine warn_of_temperatures
-
-   !> A temperature in K and in degrees Celsius
-   function kelvin(temperature) result(text)
-      !> [K]
-      real(wp), intent(in) :: temperature
-      character(len=:), allocatable :: text
-
-      text = real_text(temperature)//' K = ' &
-         //real_text(anint(100.0_wp*temperature - 27315.0_wp)/100.0_wp)//' C'
-   end function kelvin
-
-   !> Warn of one material if impacts rely on it beyond its data
-   subroutine warn_of_band(case, grid, summary, item)
-      type(case_t), intent(in) :: case
-      type(grid_t), intent(in) :: grid
-      type(summary_t), intent(in) :: summary
-      integer, intent(in) :: item
-
-      type(reliance_t) :: reliance, worst
-      integer :: points(2), i, time, worst_point
-      logical, allocatable :: known(:)
-
-      if (.not. (case%given('material', 'valid_from', item) &
-         .or. case%given('material', 'valid_to', item))) return
-      time = quantity_place('contact_time')
-      allocate (known(size(summary%status)))
-      known = summary%status == contact_separated
-      if (.not. any(known)) return
-      points = [minloc(summary%values(time)%reals, dim=1, mask=known), &
-         maxloc(summary%values(time)%reals, dim=1, mask=known)]
-      worst_point = 0
-      do i = 1, merge(1, 2, points(1) == points(2))
-         call find_reliance(reliance, grid%case_at(case, points(i)), item, &
-            summary%values(time)%reals(points(i)))
-         if (.not. reliance%relies) cycle
-         if (worst_point > 0 .and. reliance%change <= worst%change) cycle
-         worst = reliance
-         worst_point = points(i)
-      end do
-      if (worst_point == 0) return
-      write (error_unit, '(a)') 'vcor: warning: '//case%source//': ' &
-         //message(worst, worst_point)
-
-   contains
-
-      !> Text of the warning
-      function message(found, point) result(text)
-         type(reliance_t), intent(in) :: found
-         integer, intent(in) :: point
-         character(len=:), allocatable :: text
-
-         character(len=:), allocatable :: name, place
-
-         call case%get('material', 'name', name, item)
-         place = ''
-         if (size(grid%axes) > 0) place = ' (at '//coordinates(grid, point)//')'
-         associate (contact_time => summary%values(time)%reals(point), &
-                    cor => summary%values(quantity_place('cor'))%reals(point))
-            text = 'the contact lasts '//short(contact_time)//' s'//place//', and ' &
-               //share_outside(found%band, found%ends, contact_time)//" the data of '" &
-               //printable(name)//"' ("
-            if (found%ends(1)) text = text//'valid_from '//short(found%band(1))//' s'
-            if (all(found%ends)) text = text//', '
-            if (found%ends(2)) text = text//'valid_to '//short(found%band(2))//' s'
-            text = text//'): with the modulus held constant there '
-            if (found%solved) then
-               text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
-                  //significant(cor, 5, 0)//' to ' &
-                  //significant(cor + found%held - found%cor, 5, 0) &
-                  //': that much depends on the extrapolation of the fit'
-            else
-               text = text//'it has no result'
-            end if
-         end associate
-      end function message
-   end subroutine warn_of_band
-
-   !> Share of a contact outside of a band of times; all of it if no time lag within it is known
-   pure function share_outside(band, ends, contact_time) result(text)
-      !> First and last time of the data [s]
-      real(wp), intent(in) :: band(2)
-      !> Whether the band has a start, and an end
-      logical, intent(in) :: ends(2)
-      !> Contact time [s]
-      real(wp), intent(in) :: contact_time
-      !> In words, such as `5.0 % of it lies before`
-      character(len=:), allocatable :: text
-
-      real(wp) :: before, after
-
-      before = 0.0_wp
-      after = 0.0_wp
-      if (ends(1)) before = min(1.0_wp, band(1)/contact_time)
-      if (ends(2)) after = max(0.0_wp, 1.0_wp - band(2)/contact_time)
-      text = ''
-      if (before > 0.0_wp) text = percent(before, 'all')//' of it lies before'
-      if (before > 0.0_wp .and. after > 0.0_wp) text = text//' and '
-      if (after > 0.0_wp) text = text//percent(after, 'all')//' of it lies after'
-      if (text == '') text = 'hardly any of it lies outside'
-   end function share_outside
+   end subroutine warn_of_data
 
 end module vcor_app_validity

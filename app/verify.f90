@@ -3,7 +3,8 @@ module vcor_app_verify
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_job, only : job_t
    use vcor_app_laws, only : evaluate, law_t, laws, verdict_t
-   use vcor_app_screen, only : heading, padded, right, short, significant, visible
+   use vcor_app_screen, only : heading, padded, right, visible
+   use vcor_rounded, only : short, significant
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_file, only : write_stdout

@@ -9,7 +9,9 @@
  * printed, nothing ends the process. A pointer that is NULL where this page does not allow it, and a
  * number of elements below zero, are VCOR_ERROR_USAGE; the message names the argument. An array without
  * elements may be NULL. A time or a frequency that is NaN is VCOR_ERROR_INPUT; a value that is NaN makes
- * its point VCOR_INVALID. No function can detect a pointer to memory that has been released.
+ * its point VCOR_INVALID. No function can detect
+ * a pointer that vcor_read() has not made, or one to memory that has been released: what follows is
+ * undefined.
  *
  * Memory. What a function hands over as a pointer (a text, an array) is released with free(), a case
  * with vcor_free(). Where the memory is too small, the code is VCOR_ERROR_FILE.
@@ -84,16 +86,41 @@ int vcor_read(const char *text, const char *name, vcor_case **self, vcor_error *
 /* Release a case; NULL is allowed */
 void vcor_free(vcor_case *self);
 
+/* Another case of the same values, which gives the same bits and the same messages. It keeps the mesh of
+ * vcor_settle. On failure *copy is NULL. */
+int vcor_copy(const vcor_case *self, vcor_case **copy, vcor_error *error);
+
+/* The case as a text for another process, with all that was set, the folder of its data files and their check
+ * sums. The text is for vcor_load alone, of the same version. A mesh of vcor_settle is not in it. */
+int vcor_dump(const vcor_case *self, char **text, vcor_error *error);
+
+/* The case of a text of vcor_dump, wherever the process is. A text of another version or a damaged one, and
+ * data files that have changed since, are VCOR_ERROR_INPUT. On failure *self is NULL. */
+int vcor_load(const char *text, vcor_case **self, vcor_error *error);
+
+/* Name of the case: that of its file, or the one that vcor_read was given for a text */
+int vcor_name(const vcor_case *self, char **name, vcor_error *error);
+
 /* Complete a case by the groups of another one, which has &material groups alone, as `vcor run` takes
  * files of materials after a case. Data files that these groups name stay relative to the folder of
  * `materials`, which may be released afterwards. */
 int vcor_add_materials(vcor_case *self, const vcor_case *materials, vcor_error *error);
 
+/* Put the one &material group of `text` in the place of that of this name. Data files that it names are
+ * relative to the folder of `source`, a file for messages, or to that of the case if `source` is NULL. */
+int vcor_replace_material(vcor_case *self, const char *material, const char *text, const char *source,
+                          vcor_error *error);
+
+/* Remove the &sweep groups, so that the case is a single impact */
+int vcor_remove_sweeps(vcor_case *self, vcor_error *error);
+
 /* Set the value at an address such as "impact.velocity", "rubber.beta" or "rubber.moduli(2)"; the
- * value as a namelist has it, a text also without quotes */
+ * value as a namelist has it, a text also without quotes. Of two keys for one quantity, such as velocity and
+ * drop_height, the one that was set last counts and the other one is no longer given. */
 int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);
 
-/* Value at an address as a namelist has it, given or by default; `*value` is NULL if there is none */
+/* Value at an address as a namelist has it, given or by default, a list of one number with a comma after it;
+ * `*value` is NULL if there is none */
 int vcor_get(const vcor_case *self, const char *address, char **value, vcor_error *error);
 
 /* Path, unit and meaning of an address */
@@ -103,6 +130,10 @@ int vcor_describe(const vcor_case *self, const char *address, vcor_column *colum
 /* The case as namelists; with `complete` also every default. The case is checked first. */
 int vcor_case_text(const vcor_case *self, int complete, char **text,
                    vcor_error *error);
+
+/* Write the case to the file `path`, as vcor_case_text has it. Data files keep their place: if the file is in
+ * another folder, they stand there by their absolute paths. */
+int vcor_save(const vcor_case *self, const char *path, int complete, vcor_error *error);
 
 /* Column `index`, from 0, of a table; returns 0 if there is none or `column` is NULL, 1 otherwise */
 int vcor_column_of(int table, int index, vcor_column *column);
@@ -128,15 +159,27 @@ int vcor_settle(vcor_case *self, vcor_error *error);
  * With m = 0 and n = 1 the case itself is solved, and an impact without a result is an error. With
  * m > 0 such a point has a status, and error->message says what the matter is, with the number of
  * the first such point counted from 1, while the code is VCOR_OK. One call for many points takes half
- * as long as a call for each, and a twentieth of vcor_set before each: that checks the whole case. If
+ * as long as a call for each. vcor_set of a text, a list or a switch checks the whole case anew, vcor_set of a
+ * number that was set before does not. If
  * the case has &sweep groups, their addresses must be among those that are given. */
 int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                int k, const char *const *columns, double *results, int threads, vcor_error *error);
 
 /* Numbers that look like those in another unit, such as a radius of 15 m: a line for each, of the case and
- * of the values of n points, which are those of vcor_solve. `*text` is NULL if there is none. */
+ * of the values of n points, which are those of vcor_solve. Each is given once for a case and its later copies. A
+ * single point (n = 1), or the case as it is (m = 0), is looked at again only when other addresses have values,
+ * so that a loop may call this before each vcor_solve. `*text` is NULL if there is nothing new. */
 int vcor_warnings(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                   char **text, vcor_error *error);
+
+/* What the data behind the materials do not say about n points that vcor_solve has solved: contacts that
+ * begin before the data of a fit (valid_from, valid_to) or of a table, or last longer, with the change of cor
+ * that depends on it, and temperatures outside of those of a shift. `statuses`, `contact_times` and `cors`
+ * are the columns status, contact_time and cor of the points. A line for each remark; `*text` is empty if the
+ * data say all that matters, and NULL if no material has data of a known range. Of a fit it solves up to four impacts more, while other calls wait. */
+int vcor_beyond_data(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
+                     const double *statuses, const double *contact_times, const double *cors,
+                     char **text, vcor_error *error);
 
 /* History of a single impact: `*rows` rows of the columns of VCOR_HISTORY. An impact that does not end
  * in separation has one, too. */

@@ -4,6 +4,7 @@
 module vcor
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
+   use vcor_case_inputs, only : inputs_t
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, error_usage
@@ -55,7 +56,7 @@ module vcor
    public :: contact_separated, contact_lasting, contact_sticking, contact_resting
    ! cases
    public :: case_t, read_case, read_case_text, override, read_data
-   public :: validate, case_text, problem_t, problem_of_case
+   public :: validate, case_text, inputs_t, problem_t, problem_of_case
    ! sweeps
    public :: sweep_t, new_sweep, solve_sweep, summary_t, failures_t
    ! results

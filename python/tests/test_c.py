@@ -10,6 +10,10 @@ from vcor import _library
 
 USAGE, INPUT = 2, 3
 CASE = str(PAPER / "sls.nml").encode()
+RUBBER = (
+    b"&material name = 'rubber', model = 'elastic', modulus = 1e7, density = 1e3, "
+    b"poisson_ratio = 0.4 /"
+)
 
 
 def called(name, *arguments):
@@ -44,17 +48,33 @@ def materials():
     return pointer
 
 
+def dump(case):
+    """Bytes of a case, or of none for the names of the functions alone."""
+    text = c_void_p()
+    called("vcor_dump", case, byref(text))
+    return (_library.take_text(text) or "").encode()
+
+
 def arguments(case):
     """Names of the arguments of each function, with what may be given."""
     text, column, count, number = c_void_p(), _library.ColumnStruct(), c_int(), c_double()
     velocity, cor = names(b"impact.velocity"), names(b"cor")
     return {
         "vcor_read": {"text?": None, "name": CASE, "self": byref(c_void_p())},
+        "vcor_copy": {"case": case, "copy": byref(c_void_p())},
+        "vcor_dump": {"case": case, "text": byref(text)},
+        "vcor_load": {"text": dump(case), "self": byref(c_void_p())},
+        "vcor_name": {"case": case, "name": byref(text)},
         "vcor_add_materials": {"case": case, "materials": materials()},
+        "vcor_replace_material": {
+            "case": case, "material": b"rubber", "text": RUBBER, "source?": None,
+        },
+        "vcor_remove_sweeps": {"case": case},
         "vcor_set": {"case": case, "address": b"impact.velocity", "value": b"2.0"},
         "vcor_get": {"case": case, "address": b"impact.velocity", "value": byref(text)},
         "vcor_describe": {"case": case, "address": b"impact.velocity", "column": byref(column)},
         "vcor_case_text": {"case": case, "complete?": 0, "text": byref(text)},
+        "vcor_save": {"case": case, "path": b"saved.nml", "complete?": 0},
         "vcor_axis": {
             "case": case, "index?": 0, "column": byref(column), "n": byref(count),
             "values": byref(text),
@@ -66,6 +86,11 @@ def arguments(case):
         },
         "vcor_warnings": {
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
+            "text": byref(text),
+        },
+        "vcor_beyond_data": {
+            "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
+            "statuses": doubles(0.0), "contact_times": doubles(1e-3), "cors": doubles(0.5),
             "text": byref(text),
         },
         "vcor_history": {"case": case, "rows": byref(count), "values": byref(text)},
@@ -88,7 +113,8 @@ def test_all_functions_are_here(case):
 
 
 @pytest.mark.parametrize("name", list(arguments(None)))
-def test_null_is_refused_by_name(case, name):
+def test_null_is_refused_by_name(case, name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     given = arguments(case)[name]
     assert called(name, *given.values())[0] == 0
     for argument in given:

@@ -610,7 +610,9 @@ def test_neo_hooke_of_ansys(tmp_path, d):
 @pytest.mark.parametrize(
     "old, new, says",
     [
-        ("NEO", "MOONEY", "TB,HYPER of kind MOONEY, expected NEO"),
+        ("NEO", "BOYCE", "TB,HYPER of kind BOYCE, expected NEO, MOONEY, YEOH"),
+        ("2,NEO", "5,MOONEY", "found 2 constants of TB,HYPER,,,,MOONEY, expected 6: 5 and 1"),
+        ("2,NEO", "2,OGDEN", "found 2 constants of TB,HYPER,,,,OGDEN, expected 6: 4 and 2"),
         (",2,NEO", ",2", "TB,HYPER of kind none, expected NEO"),
         ("TBDATA,1,2.0", "TBDATA,1,-2.0", ":2: found mu = -2"),
         ("TB,PRONY", "MP,EX,1,3.0\nTB,PRONY", ":2: found TB,HYPER and MP,EX, expected one"),
@@ -624,8 +626,24 @@ def test_wrong_options_of_ansys_are_named(tmp_path, old, new, says):
 @pytest.mark.parametrize(
     "old, new, says",
     [
-        ("NEO HOOKE", "MOONEY-RIVLIN", "MOONEY-RIVLIN"),
-        ("NEO HOOKE", "OGDEN, N=2", "OGDEN"),
+        ("NEO HOOKE", "OGDEN, N=2", r"2 numbers of \*HYPERELASTIC, OGDEN, expected 6: 4 and 2"),
+        ("NEO HOOKE", "YEOH", "2 numbers of .*, YEOH, expected 6: 3 and 3 of the volume"),
+        ("NEO HOOKE", "OGDEN, N=7", "N=7, expected a whole number from 1 to 6"),
+        ("NEO HOOKE", "POLYNOMIAL, N=x", "found 'x', expected a number"),
+        ("NEO HOOKE", "ARRUDA-BOYCE", "ARRUDA-BOYCE, expected constants of NEO HOOKE"),
+        ("NEO HOOKE", "MARLOW", "MARLOW"),
+        ("NEO HOOKE", "YEOH, TEST DATA INPUT", "YEOH, TESTDATAINPUT"),
+        ("HYPERELASTIC, NEO HOOKE", "HYPERFOAM, N=1", r"HYPERFOAM, expected \*ELASTIC or \*HYP"),
+        ("HYPERELASTIC, NEO HOOKE", "HYPOELASTIC", "found no elastic constants"),
+        (
+            "TIME=PRONY",
+            "TIME=PRONY, TYPE=TRACTION",
+            "TYPE=TRACTION; expected TIME=PRONY of",
+        ),
+        ("TIME=PRONY", "TIME=RELAXATION TEST DATA", "TIME=RELAXATIONTESTDATA"),
+        ("TIME=PRONY\n 0.4, , 0.02", "FREQUENCY=TABULAR\n 0.4,1,0.1,1,0.02", "FREQUENCY=TABULAR"),
+        (" 0.5, 0.1", " 0.5, 0.1, 20\n 0.4, 0.1, 40", "with 2 lines, expected the 2 constants"),
+        ("NAME=gum", 'NAME="gum" rubber', "found 'rubber' after the name"),
         ("NEO HOOKE", "NEO HOOKE, TEST DATA INPUT", "TESTDATAINPUT"),
         (" 0.5, 0.1", " -0.5, 0.1", "C10 = -0.5"),
         ("TIME=PRONY", "TIME=CREEP TEST DATA", "TIME=CREEPTESTDATA"),
@@ -636,6 +654,107 @@ def test_wrong_options_of_ansys_are_named(tmp_path, old, new, says):
 def test_wrong_options_of_abaqus_are_named(tmp_path, old, new, says):
     with pytest.raises(vcor.InputError, match=says):
         back(tmp_path, NEO.format("", "0.1").replace(old, new))
+
+
+@pytest.mark.parametrize("kind", ["ISOTROPIC", "isotropic"])
+def test_the_kind_of_a_solid_is_read(tmp_path, kind):
+    found = back(tmp_path, NEO.format("", "0.1").replace("=PRONY", f"=PRONY, TYPE={kind}"))
+    assert found == back(tmp_path, NEO.format("", "0.1"))
+
+
+def small_shear(energy):
+    """Shear modulus of a strain energy of the stretches, by its second difference."""
+    h = 1e-3
+
+    def at(shear):
+        stretch = shear / 2 + math.sqrt(1 + shear**2 / 4)
+        return energy(np.array([stretch, 1 / stretch, 1.0]))
+
+    return (at(h) - 2 * at(0.0) + at(-h)) / h**2
+
+
+def polynomial(terms):
+    """Strain energy of C_ij (I1 - 3)^i (I2 - 3)^j."""
+    return lambda stretch: sum(
+        c * ((stretch**2).sum() - 3) ** i * ((stretch**-2.0).sum() - 3) ** j
+        for (i, j), c in terms.items()
+    )
+
+
+def ogden(pairs, factor):
+    return lambda stretch: sum(
+        factor(mu, alpha) * ((stretch**alpha).sum() - 3) for mu, alpha in pairs
+    )
+
+
+C10, C01, C20, C11, C02, C30 = 0.4, 0.1, -0.02, 0.01, 0.003, 0.004
+OGDEN = [(0.7, 1.3), (-0.1, -2.0), (0.02, 6.0)]
+#: What stands in Abaqus and in Ansys, and the strain energy of their manuals
+HYPERELASTIC = {
+    "Mooney-Rivlin": ("MOONEY-RIVLIN", [C10, C01], 1, "2,MOONEY", polynomial(
+        {(1, 0): C10, (0, 1): C01})),
+    "polynomial": ("POLYNOMIAL, N=2", [C10, C01, C20, C11, C02], 2, "2,POLY", polynomial(
+        {(1, 0): C10, (0, 1): C01, (2, 0): C20, (1, 1): C11, (0, 2): C02})),
+    "polynomial without a word": ("N=1", [C10, C01], 1, "1,POLY", polynomial(
+        {(1, 0): C10, (0, 1): C01})),
+    "Mooney of five": ("", [C10, C01, C20, C11, C02], 1, "5,MOONEY", polynomial(
+        {(1, 0): C10, (0, 1): C01, (2, 0): C20, (1, 1): C11, (0, 2): C02})),
+    "Yeoh": ("YEOH", [C10, C20, C30], 3, "3,YEOH", polynomial(
+        {(1, 0): C10, (2, 0): C20, (3, 0): C30})),
+    "reduced": ("REDUCED POLYNOMIAL, N=4", [C10, C20, C30, 1e-4], 4, "4,YEOH", polynomial(
+        {(1, 0): C10, (2, 0): C20, (3, 0): C30, (4, 0): 1e-4})),
+    "Ogden of Abaqus": ("OGDEN, N=3", [x for pair in OGDEN for x in pair], 3, "", ogden(
+        OGDEN, lambda mu, alpha: 2 * mu / alpha**2)),
+    "Ogden of Ansys": ("", [x for pair in OGDEN for x in pair], 3, "3,OGDEN", ogden(
+        OGDEN, lambda mu, alpha: mu / alpha)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("d", [0.1, 0.0, None])
+@pytest.mark.parametrize("name", HYPERELASTIC)
+def test_hyperelastic_solids_at_small_strains(tmp_path, name, d):
+    """G by the strain energy, K = 2/D1, at time zero."""
+    form, constants, volumes, kind, energy = HYPERELASTIC[name]
+    numbers = [*constants, *([] if d is None else [d, *[0.0] * (volumes - 1)])]
+    texts = []
+    if form:
+        rows = [", ".join(map(str, numbers[i : i + 8])) for i in range(0, len(numbers), 8)]
+        head = f"*MATERIAL, NAME=gum\n*HYPERELASTIC, {form}, MODULI=INSTANTANEOUS\n"
+        texts.append(head + "\n".join(rows) + "\n*VISCOELASTIC, TIME=PRONY\n0.4, , 0.02\n")
+    if kind:
+        data = "\n".join(f"TBDATA,{i + 1},{','.join(map(str, numbers[i : i + 6]))}"
+                         for i in range(0, len(numbers), 6))  # fmt: skip
+        texts.append(f"TB,HYPER,1,1,{kind}\n{data}\nTB,PRONY,1,1,1,SHEAR\nTBDATA,1,0.4,0.02\n")
+    g = small_shear(energy)
+    nu = (3 * 2 / d - 2 * g) / (2 * (3 * 2 / d + g)) if d else 0.5
+    for text in texts:
+        found = back(tmp_path, text)
+        # the second difference has an error of h^2 and some 1e-10
+        assert found.glassy_modulus == pytest.approx(2 * (1 + nu) * g, rel=1e-5)
+        assert found.poisson_ratio == pytest.approx(nu, rel=1e-5)
+        assert found.moduli[0] == pytest.approx(0.4 * found.glassy_modulus)
+        assert any("read at small strains" in remark for remark in found.remarks)
+
+
+def test_a_solid_that_is_soft_at_small_strains_is_refused(tmp_path):
+    text = NEO.format("", "0.1").replace("NEO HOOKE", "MOONEY-RIVLIN")
+    with pytest.raises(vcor.InputError, match=r"found C10 \+ C01 = -0.1 and D1 = 0.1"):
+        back(tmp_path, text.replace(" 0.5, 0.1", " 0.2, -0.3, 0.1"))
+
+
+def test_what_lsdyna_has_more_of(tmp_path):
+    with pytest.raises(vcor.InputError, match=r":1: found \*MAT_OGDEN_RUBBER, expected"):
+        back(tmp_path, "*MAT_OGDEN_RUBBER\n         1  1.00E-09\n")
+    with pytest.raises(vcor.InputError, match=r"found a load curve \(LCID, LCIDK\)"):
+        back(tmp_path, DYNA.format(second="        12"))
+
+
+def test_a_material_is_named_as_in_the_deck(tmp_path):
+    text = NEO.format("", "0.1").replace("NAME=gum", 'NAME="a, soft = gum"')
+    for name in ("a, soft = gum", '"a, soft = gum"', None):
+        found = back(tmp_path, text + text.replace("soft", "hard") * bool(name), material=name)
+        assert found.name == "a, soft = gum"
+        assert back(tmp_path, found.text("abaqus")).name == found.name
 
 
 @pytest.mark.parametrize(

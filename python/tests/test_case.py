@@ -556,7 +556,7 @@ def test_ctrl_c_ends_a_sweep(sls):
 
 
 def test_the_progress_bar(sls, capsys, monkeypatch):
-    monkeypatch.setattr("vcor.case._BAR_DELAY", 0.0)
+    monkeypatch.setattr("vcor.progress._BAR_DELAY", 0.0)
     sls.points({"impact.velocity": [1.0, 2.0]}, progress=True)
     assert "2/2" in capsys.readouterr().err
     sls.points({"impact.velocity": [1.0, 2.0]})

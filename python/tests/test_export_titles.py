@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import vcor
+from vcor.arguments import written
 from vcor.exchange import codes
 
 VELOCITIES = np.geomspace(1.0, 5.0, 4)
@@ -68,7 +69,7 @@ def test_a_title_is_a_comment(tmp_path, curve, target, title, name):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(codes, "solved", lambda *_: curve)
         plain = vcor.export(case, target, VELOCITIES)
-        text = case.text().replace("'rubber'", vcor.case._written(name, ""))
+        text = case.text().replace("'rubber'", written(name, ""))
         try:
             other = vcor.Case(text)
             other["case.title"] = title

@@ -10,6 +10,8 @@ from conftest import PAPER, ROOT
 import vcor
 from vcor import _command
 from vcor.materials import fit as fit_module
+from vcor.materials.data import read_data
+from vcor.materials.fit import samples_of
 
 DATA = ROOT / "examples" / "soft_rubber_data.csv"
 
@@ -162,3 +164,63 @@ def test_no_file_that_was_read_is_replaced(program, tmp_path):
 def test_errors(data, settings, error, line):
     with pytest.raises(error, match=line):
         vcor.fit(data, **settings)
+
+
+def test_arrays_by_name_have_units_and_any_order():
+    omega = np.geomspace(1, 1e4, 25)
+    p = (1j * omega * 1e-3) ** 0.5
+    found = 2e6 + 5e7 * p / (1 + p)
+    settings = {"model": "mittag_leffler", "poisson_ratio": 0.5}
+    right = vcor.fit((omega, found.real, found.imag), **settings)
+    for data in (
+        {
+            "E'' [MPa]": found.imag / 1e6,
+            "f [Hz]": omega / (2 * np.pi),
+            "E' [MPa]": found.real / 1e6,
+        },
+        {"loss_modulus": found.imag, "omega": omega, "storage_modulus": found.real},
+        {"Frequency [rad/s]": omega, "G' [Pa]": found.real / 3, "G'' [Pa]": found.imag / 3},
+    ):
+        one = vcor.fit(data, **settings)
+        assert [p.value for p in one.parameters] == pytest.approx(
+            [p.value for p in right.parameters], rel=1e-6
+        )
+    with pytest.warns(UserWarning, match=r"'frequency' is taken in rad/s; 'frequency \[Hz\]' is"):
+        vcor.fit({"frequency": omega, "storage_modulus": found.real, "loss_modulus": found.imag},
+                 **settings)  # fmt: skip
+
+
+RISE, FALL = [1.0, 2.0, 3.0], [3.0, 2.0, 1.0]
+
+
+@pytest.mark.parametrize(("data", "error", "line"), [
+    ({"x": RISE, "y": FALL}, vcor.InputError, "found 'x', expected time, relaxation"),
+    ({"t [s]": RISE}, vcor.InputError, "found time, expected time, relaxation_modulus"),
+    ({"t [mm]": RISE, "E [Pa]": FALL}, vcor.InputError, r"found 't \[mm\]'"),
+    ({"t": RISE, "time [s]": FALL}, vcor.InputError, "found two arrays of the time"),
+    ({"t": RISE, "G": FALL}, vcor.UsageError, "found shear moduli, 'G', expected poisson"),
+    ({"t": RISE, "log E": FALL}, vcor.InputError, "found 'log E'"),
+    ({}, vcor.InputError, "found nothing"),
+])  # fmt: skip
+def test_arrays_by_name_are_known(data, error, line):
+    with pytest.raises(error, match=line):
+        vcor.fit(data)
+
+
+def test_many_points_are_averaged(tmp_path):
+    """A record with equal steps in time: the result is that of the same points, spaced by ratio."""
+    time = np.arange(1, 100_001) * 1e-3
+    noise = np.random.default_rng(4).standard_normal(len(time))
+    modulus = 2e6 * (0.4 + 0.6 * np.exp(-time / 5)) * np.exp(0.01 * noise)
+    path = tmp_path / "long.csv"
+    rows = "".join(f"{t:.6g},{e:.7g}\n" for t, e in zip(time, modulus, strict=True))
+    path.write_text("t [s],E [Pa]\n" + rows)
+    samples, _, (note,) = samples_of(read_data(path))
+    assert f"100000 points are more than 2000: the fit is to {len(samples.at)} " in note
+    assert len(samples.at) < 1002 and np.all(np.diff(samples.at) > 0)
+    found = vcor.fit(path, model="sls", poisson_ratio=0.4)
+    assert found["glassy_modulus"] == pytest.approx(2e6, rel=5e-3)
+    assert found["beta"] == pytest.approx(0.2, rel=2e-2)
+    path.write_text("t [s],E [Pa]\n" + rows[: rows.index("\n1.5,") + 1])
+    samples, _, notes = samples_of(read_data(path))
+    assert len(samples.at) == 1499 and not notes

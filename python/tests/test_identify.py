@@ -652,10 +652,11 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
     ("head", "said"),
     [
         ("rebound [%]", "columns={'resilience': 'rebound [%]'}"),
-        ("rebound", "'resilience': 'rebound'"),
-        ("bounce [mm]", "'drop_height': 'bounce [mm]'"),
+        ("rebound", "is rebound_height or rebound_velocity or resilience, say which: "),
+        ("bounce [mm]", "say so: columns={'rebound_height': 'bounce [mm]'}"),
         ("impulse [ms]", "'contact_time': 'impulse [ms]'"),
-        ("contact tyme", "did you mean 'contact_time'?"),
+        ("contact tyme", "columns={'contact_time': 'contact tyme'}"),
+        ("kontact_tme", "did you mean 'contact_time'?"),
     ],
 )
 def test_a_column_that_is_not_known_is_guessed_by_its_unit(tmp_path, head, said):
@@ -702,6 +703,18 @@ def test_the_table_of_rebound():
         for law, wanted in (("receding", exact), ("boltzmann", boltzmann)):
             case["contact.law"] = law
             assert case.solve()["cor"] == pytest.approx(float(wanted), abs=6e-6)
+
+
+def test_the_limits_of_small_losses_on_the_page_of_rebound():
+    page = (ROOT / "docs" / "rebound.md").read_text("utf-8")
+    shown = re.search(r"1 - e tends to ([\d.]+) tan delta \(Boltzmann: ([\d.]+)\)", page)
+    case = vcor.read(ROOT / "examples" / "identification" / "resilience.nml")
+    case["solver.accuracy"], exponent = 1e-11, 1e-5
+    case["rubber.exponent"] = exponent
+    for law, wanted in zip(("receding", "boltzmann"), shown.groups(), strict=True):
+        case["contact.law"] = law
+        ratio = (1 - case.solve()["cor"]) / math.tan(math.pi * exponent / 2)
+        assert f"{ratio:.2f}" == wanted
 
 
 def test_the_limits_of_the_model_are_reported(sls):

@@ -9,15 +9,10 @@ ROOT = Path(vcor.__file__).parent
 
 
 def imports(path, known):
-    """Modules of the package that a file imports, at its head or within a procedure."""
+    """Modules of the package that a file imports, anywhere, for types alone too."""
     found = set()
     own = path.relative_to(ROOT).parent.parts
     tree = ast.parse(path.read_text())
-    # names of types alone are not an arrow
-    tree.body = [
-        one for one in tree.body
-        if not (isinstance(one, ast.If) and "TYPE_CHECKING" in ast.dump(one.test))
-    ]  # fmt: skip
     for node in ast.walk(tree):
         if not isinstance(node, ast.ImportFrom) or not node.level:
             continue
@@ -31,11 +26,42 @@ def imports(path, known):
     return found
 
 
-def test_no_circle_of_imports():
+def arrows():
+    """Modules that each module imports."""
     paths = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
     paths = {name: path for name, path in paths.items() if not name.endswith("__init__")}
     assert len(paths) > 10
-    left = {name: imports(path, paths) - {name} for name, path in paths.items()}
+    return {name: imports(path, paths) - {name} for name, path in paths.items()}
+
+
+#: Layers: cases and results; materials from data, with the figures that show both; exchange
+CORE = {
+    "_command", "_differences", "_library", "_text", "arguments", "case", "material", "progress",
+    "results",
+}  # fmt: skip
+EXCHANGE = "exchange."
+
+
+def layer(name):
+    """0, 1 or 2."""
+    return 0 if name in CORE else 2 if name.startswith(EXCHANGE) else 1
+
+
+def test_three_layers():
+    found = arrows()
+    assert set(found) > CORE and {layer(name) for name in found} == {0, 1, 2}
+    for name, needs in found.items():
+        assert {one for one in needs if layer(one) > layer(name)} == set(), name
+
+
+def test_a_case_is_no_module_of_figures():
+    """Its method `plot` is put there by the package: no module is named in a text either."""
+    for name in CORE - {"_command"}:
+        assert "import_module" not in (ROOT / f"{name}.py").read_text(), name
+
+
+def test_no_circle_of_imports():
+    left = arrows()
     assert any(left.values())
     while ground := [name for name, needs in left.items() if not needs & left.keys()]:
         for name in ground:

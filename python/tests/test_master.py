@@ -10,7 +10,7 @@ import vcor
 from vcor import _command
 from vcor.materials import master
 from vcor.materials.data import read_moduli
-from vcor.materials.shifting import Curve
+from vcor.materials.shifting import Curve, laws_of
 
 C1, C2, REFERENCE = 12.0, 80.0, 293.15
 
@@ -383,10 +383,48 @@ def test_constants_that_the_data_do_not_determine():
     wlf = found.laws[0]
     assert not wlf.determined and (found.law is None or found.law.name == "Arrhenius")
     assert abs(wlf.ratio[0] - 0.06) < 4 * wlf.ratio[1]
-    assert "not determined by these data, only wlf_c1/wlf_c2" in str(found)
-    assert "wlf_c1" not in found.keys("t.csv")
+    assert f"WLF: wlf_c1/wlf_c2 {wlf.ratio[0]:.4g} +- {wlf.ratio[1]:.2g} 1/K" in str(found)
+    assert "all that these data determine of its constants" in str(found)
+    assert "wlf_c1 " not in str(found) and "wlf_c1" not in found.keys("t.csv")
     with pytest.raises(vcor.InputError, match=r"two curves at 293.15 K"):
         master.of_curves([curves[2], curves[2]], "data")
+
+
+@pytest.mark.parametrize("bend", [-3e-3, -1.2e-3, -1e-5, 0.0])
+@pytest.mark.parametrize("kelvin", [(10, 60, 5), (0, 100, 4), (20, 40, 6)])
+def test_shifts_that_do_not_bend_as_wlf_give_a_ratio_only(bend, kelvin):
+    """log10 a_T = -0.07 (T - T0) + bend (T - T0)^2 has its best C2 at infinity."""
+    temperatures = np.linspace(*kelvin) + 273.15
+    away = temperatures - REFERENCE
+    steps = np.diff(-0.07 * away + bend * away**2)
+    law = laws_of(temperatures, steps, np.full(len(steps), 0.02), REFERENCE)[0]
+    assert law.name == "WLF" and not law.determined
+    # the slope of the straight line that fits the steps best
+    widths = np.diff(away)
+    straight = -(steps @ widths) / (widths @ widths)
+    assert law.ratio[0] == pytest.approx(straight, rel=1e-4)
+    found = master.Master(REFERENCE, temperatures, away, away, (law,), ())
+    assert "e+1" not in str(found)
+    (written,) = found.as_dict()["laws"]
+    assert written["values"] == {"wlf_c1": None, "wlf_c2": None} == written["errors"]
+    assert written["ratio"] == law.ratio[0] and not written["determined"]
+
+
+def test_errors_of_wlf_are_those_of_noise():
+    """Standard errors of the constants and of their ratio, by fits to noise."""
+    rng, sigma = np.random.default_rng(3), 0.01
+    temperatures = np.arange(0, 60, 5.0) + 273.15
+    away = temperatures - REFERENCE
+    steps = np.diff(-C1 * away / (C2 + away))
+    errors = np.full(len(steps), sigma)
+    law = laws_of(temperatures, steps, errors, REFERENCE)[0]
+    laws = [laws_of(temperatures, steps + sigma * rng.normal(size=len(steps)), errors, REFERENCE)[0]
+            for _ in range(100)]  # fmt: skip
+    # 100 fits have the deviation to 7 %: four times that
+    for name, error in law.errors.items():
+        spread = np.std([np.log(one.values[name]) for one in laws]) * law.values[name]
+        assert spread == pytest.approx(error, rel=0.28)
+    assert np.std([one.ratio[0] for one in laws]) == pytest.approx(law.ratio[1], rel=0.28)
 
 
 def spread_curves(seed, vertical=False, noise=0.01, loss=1.0):

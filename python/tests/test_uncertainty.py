@@ -373,12 +373,36 @@ def test_bad_options_are_refused_in_one_line(words, said, capsys, tmp_path):
     assert said in error and error.count("\n") == 1
 
 
-def test_impacts_without_a_result_are_a_line(capsys, tmp_path):
-    words = [PAPER / "sls.nml", "--vary", "sphere.radius=0.5", "--samples", "32", "--output"]
-    with pytest.raises(SystemExit):
-        _command.call("uncertainty", [str(word) for word in [*words, tmp_path]])
-    lines = capsys.readouterr().err.splitlines()
-    assert [line.split()[1] for line in lines] == ["note:", "error:"]
+@pytest.mark.parametrize(
+    ("spread", "code", "said"),
+    [
+        # 5 m on 10 mm, for 5 %
+        ("sphere.radius=5", 2, "5 % is 5%"),
+        ("impact.velocity=10.1", 2, "10.1 % is 10.1%"),
+        ("rubber.poisson_ratio=2", 2, "2 % is 2%"),
+        # a deviation leaves it positive, and a tenth of the samples are not
+        ("impact.velocity=8", 5, "samples have no result, the first one because impact.velocity"),
+        ("sphere.radius=8e-3", 5, "expected 10 % at most: --vary ADDRESS=LOW:HIGH"),
+    ],
+)
+def test_a_spread_that_leaves_few_results_has_no_table(capsys, tmp_path, spread, code, said):
+    words = [PAPER / "sls.nml", "--vary", spread, "--samples", "64", "--output", tmp_path / "out"]
+    with pytest.raises(SystemExit) as caught:
+        _command.call("uncertainty", [str(word) for word in words])
+    out, err = capsys.readouterr()
+    assert caught.value.code == code and out == ""
+    assert said in err and err.count("\n") == 1 and not (tmp_path / "out").exists()
+
+
+def test_a_number_that_is_meant_in_percent_is_refused(sls):
+    with pytest.raises(vcor.UsageError, match=r"expected at most 1; 5 % is 0.05 or '5%'"):
+        vcor.propagate(sls, {"sphere.radius": 5})
+
+
+def test_a_few_samples_without_a_result_are_noted(sls):
+    with pytest.warns(vcor.NoResultWarning, match=r"of \d+ points have no result"):
+        found = vcor.propagate(sls, {"impact.velocity": "5"}, samples=256, quantities=["cor"])
+    assert 0 < found.lost <= 0.1 * found.samples
 
 
 def test_a_list_is_varied_term_by_term():
@@ -582,3 +606,11 @@ def test_sweeps_that_have_no_bands(swept, half_space):
     source = {"parameters": [{"name": "impact.velocity", "value": 2.0}], "covariance": [[0.01]]}
     with pytest.raises(vcor.UsageError, match="is swept, and the covariance has it"):
         vcor.bands(swept, covariance=source)
+
+
+def test_forms_of_a_spread_are_those_of_the_caller(sls, capsys):
+    with pytest.raises(vcor.UsageError, match=r"such as 0.05 or '5%', '0.1' \(in its unit"):
+        vcor.propagate(sls, {"rubber.beta": "x"})
+    with pytest.raises(SystemExit):
+        _command.call("uncertainty", [str(PAPER / "sls.nml"), "--vary", "rubber.beta=x"])
+    assert "expected such as 5%, 0.1 (in its unit) or 1:2" in capsys.readouterr().err

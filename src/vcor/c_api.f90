@@ -1,4 +1,5 @@
-!> The C interface; include/vcor.h documents its functions
+!> The C interface: what is computed of cases, which `vcor_c_api_cases` makes; include/vcor.h
+!> documents the functions of both
 !>
 !> Only one thread at a time handles texts, in the critical section `vcor_c_api`, because gfortran
 !> 12 keeps the length of a text returned by a function in static storage. Impacts are solved
@@ -7,23 +8,19 @@ module vcor_c_api
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
       c_loc, c_null_char, c_null_ptr, c_ptr
-   use vcor_c_api_handle, only : build, build_points, find_body, find_place, handle_t, open_case, &
-      open_points
+   use vcor_c_api_handle, only : build, build_own, build_points, find_body, find_places, handle_t, &
+      open_case, open_points
    use vcor_c_api_values, only : array_at, c_column_t, c_numbers, c_text, demand, get_array, &
       new_column, put_column, put_copy, put_count, put_error, put_pointer, put_text, refuse_long, &
       report_error
-   use vcor_case_address, only : resolve
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
-   use vcor_case_catalogue, only : catalogue, find_group
+   use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_checks, only : implausible_numbers, note_length, validate
    use vcor_case_grid, only : grid_t, new_grid
-   use vcor_case_printed, only : case_text, value_text
    use vcor_case_problem, only : problem_t
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_history, only : history
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : history_steps
-   use vcor_io_case_reader, only : add_materials, override, read_case, read_case_text
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
@@ -40,8 +37,7 @@ module vcor_c_api
    implicit none
    private
 
-   public :: vcor_library_version, vcor_read, vcor_free, vcor_add_materials, vcor_set, vcor_get, &
-      vcor_describe, vcor_case_text, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
+   public :: vcor_library_version, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
       vcor_warnings, vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, &
       vcor_verify
 
@@ -70,181 +66,6 @@ contains
 
       text = c_loc(version_text)
    end function vcor_library_version
-
-   !> Read a case from text or from a file
-   function vcor_read(text, name, self, error) bind(c) result(code)
-      type(c_ptr), value :: text, name, self, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-
-      call put_pointer(self, c_null_ptr)
-      call demand(name, 'name', trouble)
-      call demand(self, 'self', trouble)
-      if (.not. allocated(trouble)) then
-!$omp critical (vcor_c_api)
-         allocate (handle)
-         if (c_associated(text)) then
-            call read_case_text(handle%case, fortran(text), fortran(name), trouble)
-         else
-            call read_case(handle%case, fortran(name), trouble)
-         end if
-         if (allocated(trouble)) then
-            deallocate (handle)
-         else
-            call put_pointer(self, c_loc(handle))
-         end if
-!$omp end critical (vcor_c_api)
-      end if
-      code = report_error(trouble, error)
-   end function vcor_read
-
-   !> Release a case
-   subroutine vcor_free(self) bind(c)
-      type(c_ptr), value :: self
-
-      type(handle_t), pointer :: handle
-
-      if (.not. c_associated(self)) return
-      call c_f_pointer(self, handle)
-      deallocate (handle)
-   end subroutine vcor_free
-
-   !> Complete a case by materials
-   function vcor_add_materials(self, materials, error) bind(c) result(code)
-      type(c_ptr), value :: self, materials, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle, other
-      type(error_t), allocatable :: trouble
-      type(case_t) :: added
-
-      call open_case(self, handle, trouble)
-      call demand(materials, 'materials', trouble)
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) then
-         call c_f_pointer(materials, other)
-         ! a copy: both may be one
-         added = other%case
-         if (added%is_materials()) then
-            call add_materials(handle%case, added)
-            if (allocated(handle%built_for)) deallocate (handle%built_for)
-         else
-            call raise(trouble, error_input, added%source &
-               //': found other groups, expected &material groups alone')
-         end if
-      end if
-!$omp end critical (vcor_c_api)
-      code = report_error(trouble, error)
-   end function vcor_add_materials
-
-   !> Set a value
-   function vcor_set(self, address, value, error) bind(c) result(code)
-      type(c_ptr), value :: self, address, value, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-      type(address_t) :: place
-      character(len=:), allocatable :: message
-
-      call open_case(self, handle, trouble)
-      call demand(address, 'address', trouble)
-      call demand(value, 'value', trouble)
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) then
-         call override(handle%case, fortran(address)//'='//fortran(value), trouble)
-         call resolve(handle%case, fortran(address), place, message)
-         if (allocated(handle%built_for)) then
-            ! the points bring values for the addresses for which it was built
-            if (all(.not. handle%built_for == place)) deallocate (handle%built_for)
-         end if
-         if (allocated(handle%solver) .and. place%group == find_group('solver')) &
-            deallocate (handle%solver)
-      end if
-!$omp end critical (vcor_c_api)
-      code = report_error(trouble, error)
-   end function vcor_set
-
-   !> Get the value at an address
-   function vcor_get(self, address, value, error) bind(c) result(code)
-      type(c_ptr), value :: self, address, value, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-      type(address_t) :: place
-      type(entry_t) :: entry
-
-      call put_pointer(value, c_null_ptr)
-      call open_case(self, handle, trouble)
-      call demand(address, 'address', trouble)
-      call demand(value, 'value', trouble)
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) &
-         call find_place(handle%case, fortran(address), place, trouble)
-      if (.not. allocated(trouble)) then
-         entry = handle%case%entry(place)
-         if (place%element > 0) then
-            call put_copy(value, c_text(real_text(entry%number)), trouble)
-         else if (entry%present) then
-            call put_copy(value, c_text(value_text(catalogue(place%row), entry)), trouble)
-         end if
-      end if
-!$omp end critical (vcor_c_api)
-      code = report_error(trouble, error)
-   end function vcor_get
-
-   !> Get path, unit and meaning of an address
-   function vcor_describe(self, address, column, error) bind(c) result(code)
-      type(c_ptr), value :: self, address, column, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-      type(address_t) :: place
-      character(len=:), allocatable :: path
-
-      call put_column(column, c_column_t())
-      call open_case(self, handle, trouble)
-      call demand(address, 'address', trouble)
-      call demand(column, 'column', trouble)
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) &
-         call find_place(handle%case, fortran(address), place, trouble)
-      if (.not. allocated(trouble)) then
-         path = handle%case%path(place)
-         associate (key => catalogue(max(place%row, handle%case%row(place))))
-            call refuse_long(path, trouble)
-            if (.not. allocated(trouble)) &
-               call put_column(column, new_column(path, key%unit, key%meaning))
-         end associate
-      end if
-!$omp end critical (vcor_c_api)
-      code = report_error(trouble, error)
-   end function vcor_describe
-
-   !> Get the case as namelists
-   function vcor_case_text(self, complete, text, error) bind(c) result(code)
-      type(c_ptr), value :: self
-      integer(c_int), value :: complete
-      type(c_ptr), value :: text, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-
-      call put_pointer(text, c_null_ptr)
-      call open_case(self, handle, trouble)
-      call demand(text, 'text', trouble)
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) call validate(handle%case, trouble)
-      if (.not. allocated(trouble)) &
-         call put_copy(text, c_text(case_text(handle%case, complete=complete /= 0)), trouble)
-!$omp end critical (vcor_c_api)
-      code = report_error(trouble, error)
-   end function vcor_case_text
 
    !> Get the description of a column of a table
    function vcor_column_of(table, index, column) bind(c) result(found)
@@ -330,7 +151,7 @@ contains
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
       type(problem_t) :: problem
-      type(c_ptr) :: none(0)
+      type(address_t) :: none(0)
       real(wp) :: nothing(0, 1)
 
       call open_case(self, handle, trouble)
@@ -419,9 +240,12 @@ contains
       type(sweep_t) :: sweep
       type(summary_t) :: summary
       type(failures_t) :: failures
+      type(address_t), allocatable :: points(:)
+      type(address_t) :: none(0)
       integer, allocatable :: places(:)
       integer(c_int) :: current
       integer :: n, team, i
+      logical :: is_own
 
       n = size(results, 2)
       results = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -441,11 +265,29 @@ contains
             //shortened(fortran(columns(i)))//"'; " &
             //suggestion(fortran(columns(i)), quantity_names()))
       end do
-      if (.not. allocated(error) .and. n > 0) &
-         call build_points(handle, addresses, values, sweep, error)
+      is_own = .false.
+      if (.not. allocated(error) .and. n > 0) then
+         if (size(addresses) == 0) then
+            call build_own(handle, sweep, is_own, error)
+         else
+            call find_places(handle%case, addresses, points, error)
+            if (.not. allocated(error)) &
+               call build_points(handle, points, values, sweep, error, addresses)
+         end if
+      end if
 !$omp end critical (vcor_c_api)
       if (allocated(error) .or. n == 0) return
       call solve_points(sweep, team, summary, failures, error)
+      if (is_own .and. failures%count > 0) then
+         ! the case as it is has the place of each value in its message
+!$omp critical (vcor_c_api)
+         call new_summary(summary, n, error, team)
+         if (.not. allocated(error)) call build_points(handle, none, values, sweep, error)
+!$omp end critical (vcor_c_api)
+         if (allocated(error)) return
+         failures = failures_t()
+         call solve_points(sweep, team, summary, failures, error)
+      end if
       do i = 1, size(columns)
          if (places(i) > size(summary%values)) then
             results(i, :) = real(summary%status, wp)
@@ -482,7 +324,6 @@ contains
       type(error_t), allocatable :: trouble
       type(c_ptr), pointer :: addresses(:)
       real(c_double), pointer :: values(:, :)
-      type(sweep_t) :: sweep
       character(len=note_length), allocatable :: notes(:)
       character(len=:), allocatable :: lines
       integer :: i
@@ -494,10 +335,8 @@ contains
       call demand(text, 'text', trouble)
       if (.not. allocated(trouble) .and. (m == 0 .or. n > 0)) then
 !$omp critical (vcor_c_api)
-         call build_points(handle, addresses, values, sweep, trouble)
-         if (.not. allocated(trouble)) call implausible_numbers(sweep%case, sweep%grid, notes)
-         if (.not. allocated(notes)) allocate (notes(0))
-         if (size(notes) > 0) then
+         call look(handle, addresses, values, notes, trouble)
+         if (.not. allocated(trouble) .and. size(notes) > 0) then
             lines = trim(notes(1))
             do i = 2, size(notes)
                lines = lines//new_line('a')//trim(notes(i))
@@ -508,6 +347,56 @@ contains
       end if
       code = report_error(trouble, error)
    end function vcor_warnings
+
+   !> Look at the numbers of a case and its points, at those of a single point only if the case or
+   !> the addresses have changed
+   subroutine look(handle, addresses, values, notes, error)
+      type(handle_t), intent(inout) :: handle
+      !> Addresses with values for each point, shape (m)
+      type(c_ptr), intent(in) :: addresses(:)
+      !> Values, shape (m, n)
+      real(wp), intent(in) :: values(:, :)
+      !> Notes on numbers that were not handed over before, shape (notes)
+      character(len=note_length), allocatable, intent(out) :: notes(:)
+      !> Error of the case, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(sweep_t) :: sweep
+      type(address_t), allocatable :: places(:)
+      character(len=note_length), allocatable :: found(:)
+      character(len=note_length) :: flaw
+      integer :: i
+      logical :: is_own
+
+      allocate (notes(0))
+      call find_places(handle%case, addresses, places, error)
+      if (allocated(error)) return
+      if (size(places) == 0 .and. allocated(handle%tuned)) places = handle%tuned
+      if (size(values, 2) <= 1) then
+         if (allocated(handle%looked_at)) then
+            if (size(handle%looked_at) == size(places)) then
+               if (all(handle%looked_at == places)) return
+            end if
+         end if
+      end if
+      if (size(addresses) == 0) then
+         call build_own(handle, sweep, is_own, error)
+      else
+         call build_points(handle, places, values, sweep, error, addresses)
+      end if
+      if (allocated(error)) return
+      if (size(values, 2) <= 1) handle%looked_at = places
+      call implausible_numbers(sweep%case, sweep%grid, found)
+      if (.not. allocated(handle%told)) allocate (handle%told(0))
+      do i = 1, size(found)
+         ! what is wrong with a value, wherever it stands
+         flaw = found(i)
+         flaw = flaw(index(trim(flaw(:index(flaw, ' = ') - 1)), ' ', back=.true.) + 1:)
+         if (any(handle%told == flaw)) cycle
+         handle%told = [handle%told, flaw]
+         notes = [notes, found(i)]
+      end do
+   end subroutine look
 
    !> Check the numbers of a call of `vcor_solve`
    subroutine check_counts(m, n, k, threads, error)
@@ -542,7 +431,7 @@ contains
       type(sweep_t) :: sweep
       type(worker_t) :: worker
       type(outcome_t) :: outcome
-      type(c_ptr) :: none(0)
+      type(address_t) :: none(0)
       real(wp), allocatable :: state(:, :)
       real(wp) :: nothing(0, 1)
 
@@ -662,7 +551,7 @@ contains
       type(case_t) :: case
       type(problem_t) :: problem
       type(comparison_t) :: comparison
-      type(c_ptr) :: none(0)
+      type(address_t) :: none(0)
       real(wp) :: nothing(0, 1)
       real(c_double), pointer :: table(:, :)
       integer :: i

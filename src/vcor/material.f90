@@ -1,6 +1,7 @@
 !> Factory of materials by the name of their model. A new model is a file under material/ and its
 !> lines here: name, parameters, and how it is built from values
 module vcor_material
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_cerf, only : cerf_parameters, cerf_t, new_cerf
@@ -12,6 +13,7 @@ module vcor_material
    use vcor_material_shift, only : shift_parameters, shift_t
    use vcor_material_table, only : new_tabulated, table_parameters, tabulated_t
    use vcor_material_type, only : density, material_t, parameter_t, power_of_time
+   use vcor_number, only : identity_of
    use vcor_words, only : join_words
    implicit none
    private
@@ -60,6 +62,8 @@ module vcor_material
       real(wp) :: number = 0.0_wp
       !> List, shape (n)
       real(wp), allocatable :: list(:)
+      !> Identity of the list, see `identity_of`; 0 if there is none
+      integer(int64) :: identity = 0_int64
    end type value_t
 
    !> Description of a material of any model: values by the names of parameters
@@ -89,6 +93,7 @@ module vcor_material
       procedure :: number
       procedure :: list
       procedure :: deforms_as
+      procedure :: is_same_as
       procedure, private :: place_of
       procedure, private :: find
    end type material_data_t
@@ -167,7 +172,9 @@ contains
          deallocate (self%fitted)
       end if
       call self%find(name, place)
-      if (place > 0) self%value(place)%list = list
+      if (place == 0) return
+      self%value(place)%list = list
+      self%value(place)%identity = identity_of(list)
    end subroutine set_list
 
    !> Whether two lists are the same
@@ -224,6 +231,28 @@ contains
       end if
       if (.not. allocated(list)) allocate (list(0))
    end function list
+
+   !> Whether two descriptions are the same in all numbers, at the same temperature; lists are
+   !> compared by their identities
+   pure function is_same_as(self, other) result(same)
+      class(material_data_t), intent(in) :: self
+      class(material_data_t), intent(in) :: other
+      logical :: same
+
+      integer :: i
+
+      same = self%n == other%n .and. self%model == other%model &
+         .and. (self%is_shear .eqv. other%is_shear) .and. self%shift%law == other%shift%law &
+         .and. (self%shift%vertical .eqv. other%shift%vertical) &
+         .and. self%shift%identity == other%shift%identity &
+         .and. .not. abs(self%temperature - other%temperature) > 0.0_wp
+      do i = 1, self%n
+         if (.not. same) return
+         same = self%value(i)%name == other%value(i)%name &
+            .and. self%value(i)%identity == other%value(i)%identity &
+            .and. .not. abs(self%value(i)%number - other%value(i)%number) > 0.0_wp
+      end do
+   end function is_same_as
 
    !> Whether two descriptions give the same modulus; names and densities do not matter
    pure function deforms_as(self, other) result(yes)

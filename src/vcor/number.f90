@@ -5,6 +5,7 @@
 !> entirely a number.
 module vcor_number
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, lower, shortened
    implicit none
@@ -13,7 +14,7 @@ module vcor_number
    public :: interval_t, contains_number, is_within, is_computable, interval_text
    public :: positive, not_negative, between_0_and_1
    public :: spaced, log_spacing
-   public :: read_real, looks_numeric, real_text
+   public :: read_real, looks_numeric, real_text, identity_of
 
    !> Largest magnitude that is accepted on input
    real(wp), parameter :: largest = 1.0e300_wp
@@ -49,6 +50,33 @@ module vcor_number
       interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp, upper_open=.true.)
 
 contains
+
+   !> Identity of a list, equal for equal lists: different ones have different identities except by
+   !> chance, one in 2^62. It is computed once, where the list is read
+   pure function identity_of(list) result(identity)
+      !> Shape (n)
+      real(wp), intent(in) :: list(:)
+      integer(int64) :: identity
+
+      ! multiplication by a prime below 2^31 modulo the prime 2^31 - 1, of two halves each, so that
+      ! no product overflows
+      integer(int64), parameter :: modulus = 2147483647_int64, factors(2) = [48271_int64, &
+         69621_int64]
+      integer(int64) :: bits, part, sums(2)
+      integer :: i, half, k
+
+      sums = size(list) + 1_int64
+      do i = 1, size(list)
+         bits = transfer(list(i), bits)
+         do half = 0, 1
+            part = ibits(bits, 32*half, 32)
+            do k = 1, 2
+               sums(k) = modulo(sums(k)*factors(k) + part, modulus)
+            end do
+         end do
+      end do
+      identity = ishft(sums(1), 31) + sums(2)
+   end function identity_of
 
    !> Whether a number is within a range
    pure function contains_number(range, number) result(yes)

@@ -6,7 +6,7 @@ module vcor_words
    private
 
    public :: contains_word, list_of_words, spelled, join_words, nearest_name, edit_distance, &
-      suggestion, longest_name
+      suggestion, longest_name, joined
 
    !> Longest name that is compared or taken from a list [bytes]
    integer, parameter :: longest_name = 64
@@ -119,6 +119,15 @@ contains
          end if
       end do
    end function join_words
+
+   !> Join two texts in one line; either may be empty
+   pure function joined(first, second) result(text)
+      character(len=*), intent(in) :: first, second
+      character(len=:), allocatable :: text
+
+      text = first//second
+      if (first /= '' .and. second /= '') text = first//'; '//second
+   end function joined
 
    !> Suggestion for an unknown name: what took the place of one that is gone, the nearest known
    !> one, or as many as fit in a line

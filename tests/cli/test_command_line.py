@@ -34,7 +34,7 @@ def test_unknown_command(vcor, word, nearest):
 
 
 @pytest.mark.parametrize(
-    "word", ["", "case.nml", "sweep", "--", "-x", "--verbose", "\n", "\x1b[31m"]
+    "word", ["", "sweep", "--", "-x", "--verbose", "\n", "\x1b[31m"]
 )
 def test_no_command_at_all(vcor, word):
     vcor.refuses(word, code=USAGE, says=["command", "run", "check", "help"])
@@ -293,3 +293,49 @@ def test_the_environment_does_not_matter(sls):
 
 def test_success_is_zero(sls):
     assert sls("check", "case.nml").code == SUCCESS
+
+
+# ------------------------------------------------------------------------------ what was meant
+
+
+@pytest.mark.parametrize("name", ["case.nml", "a b.nml", "folder/case.nml", ".nml", "x.nml.nml"])
+def test_a_case_without_a_command(vcor, name):
+    vcor.refuses(name, code=USAGE, says=[f"unknown command '{name}'; did you mean vcor run {name}?"])
+
+
+@pytest.mark.parametrize("name", ["nml", "case.nm", "case.nml.txt", "x"])
+def test_a_word_that_is_no_case(vcor, name):
+    vcor.refuses(name, code=USAGE, says=[f"unknown command '{name}'", "check"])
+
+
+@pytest.mark.parametrize("words, says", [
+    (["--print", "cor,", "contact_time"], "between 'cor,' and 'contact_time', expected none, such as --print"),
+    (["--print", "cor", ",contact_time"], "between 'cor' and ',contact_time'"),
+    (["--print=cor,", "contact_time"], "between 'cor,' and 'contact_time'"),
+    (["--set", "impact.velocity", "=", "2"], "between 'impact.velocity' and '=', expected none, such as --set"),
+    (["--set", "impact.velocity=", "2"], "between 'impact.velocity=' and '2'"),
+    (["--set", "impact.velocity", "=2"], "between 'impact.velocity' and '=2'"),
+])  # fmt: skip
+def test_a_blank_that_cuts_a_value(sls, words, says):
+    sls.refuses("run", "case.nml", *words, code=USAGE, says=[says])
+
+
+@pytest.mark.parametrize("words", [
+    ["case.nml", "--print", "cor,contact_time"], ["--print", "cor", "case.nml"],
+    ["--set", "impact.velocity=2", "case.nml"], ["--set", "impact.velocity = 2", "case.nml"],
+])  # fmt: skip
+def test_values_without_such_a_blank(sls, words):
+    assert sls("run", *words, "--quiet").code == SUCCESS
+
+
+@pytest.mark.parametrize("name, says", [("a.h5", "; vcor plot draws files"), ("a.xlsx", "identify and table")])
+@pytest.mark.parametrize("command", ["run", "check", "material", "verify"])
+def test_results_and_data_are_no_case(sls, name, says, command):
+    sls.write("x", name)
+    sls.refuses(command, name, code=INPUT, says=[f"{name}:1: found", says])
+    sls.refuses(command, f"no{name}", code=FILE, says=[f"no{name}: there is no such file"])
+
+
+@pytest.mark.parametrize("topic", ["tangential", "rolling", "oblique", "hollow"])
+def test_help_on_what_there_is_not(vcor, topic):
+    vcor.refuses("help", topic, code=USAGE, says=[f"no help on '{topic}': "])

@@ -38,7 +38,7 @@ KINDS = ["file", "link", "link that leads nowhere", "pipe", "folder"]
 def test_temporary_name_is_taken(vcor, kind, text):
     """What a killed run has left is replaced, and no link is followed."""
     vcor.write(text)
-    path = vcor.folder / "out" / "case_summary.csv.tmp"
+    path = vcor.folder / "out" / "case_summary.csv.vcor.tmp"
     plant(path, kind, vcor.folder / "victim")
     words = ["run", "case.nml", "--output", "out", "--quiet"]
     if kind == "folder":
@@ -48,6 +48,23 @@ def test_temporary_name_is_taken(vcor, kind, text):
     assert not os.path.lexists(path)
     assert kind != "link" or (vcor.folder / "victim").read_text() == "precious"
     assert not (vcor.folder / "out" / "nowhere").exists()
+
+
+@pytest.mark.parametrize("words", [["run"], ["run", "--output", "out"], ["material"]])
+@pytest.mark.parametrize("text", [SLS, SWEEP])
+def test_files_of_the_user_stay(vcor, text, words):
+    """NAME.tmp beside any result is a file of the user's."""
+    vcor.write(text)
+    (vcor.folder / "out").mkdir()
+    vcor.succeeds(words[0], "case.nml", *words[1:], "--quiet")
+    made = [path for path in contents(vcor.folder) if path.suffix != ".nml"]
+    assert made
+    own = [path.with_name(path.name + ".tmp") for path in made]
+    for path in own:
+        path.write_text("precious")
+    vcor.succeeds(words[0], "case.nml", *words[1:], "--quiet")
+    assert [path.read_text() for path in own] == ["precious"]*len(own)
+    assert set(contents(vcor.folder)) - {*made, *own} == {vcor.folder / "case.nml"}
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -190,6 +190,15 @@ def test_the_walk_from_dma_to_restitution(folder):
     assert shell(folder, head) in text_of(page)
 
 
+def test_the_coefficient_of_moduli_at_several_temperatures(folder):
+    """The number that the page gives for its commands."""
+    page = text_of("docs/identification.md")
+    begin = "vcor master examples/identification/dma.csv"
+    printed = shell(folder, next(b for b in blocks("docs/identification.md", "sh") if begin in b), page)
+    value = float(re.search(r"^cor +([\d.]+)", printed, re.MULTILINE)[1])
+    assert f"coefficient of restitution: {value:.4f} here" in page
+
+
 def test_the_loop_prints_what_the_page_shows(folder):
     page = text_of("docs/sweeps.md")
     loop = next(block for block in blocks("docs/sweeps.md", "sh") if "for v in" in block)

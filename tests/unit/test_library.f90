@@ -8,7 +8,7 @@ program test_library
       cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
       contact_resting, contact_separated, contact_sticking, error_file, error_input, &
       error_numerical, error_t, error_usage, face_t, failures_t, &
-      history_table, impact_t, material_t, mittag_leffler_t, new_cerf, &
+      history_table, impact_t, inputs_t, material_t, mittag_leffler_t, new_cerf, &
       new_contact_law, new_contact_modulus, new_elastic, new_face, new_impact, new_mittag_leffler, &
       new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
       new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, power_law_t, &
@@ -278,6 +278,7 @@ contains
    !> A case file, and the tables of its results
    subroutine test_case()
       type(case_t) :: case
+      type(inputs_t) :: inputs
       type(problem_t) :: problem
       type(outcome_t) :: outcome
       type(trajectory_t) :: trajectory
@@ -301,10 +302,10 @@ contains
       call write_hdf5('no/such/folder/x.h5', [table], error)
       call refused(error, error_file, "no folder for an HDF5 file")
       ! a plate of a tenth of a millimetre absorbs the impact
-      call override(case, 'plate.half_thickness=1e-4', error)
-      call success(error, "a thin plate is not an error")
-      call problem%update(case, error)
-      call success(error, "its impact is built")
+      inputs = problem%inputs
+      inputs%half_thickness = 1.0e-4_wp
+      call problem%build(inputs, error)
+      call success(error, "the impact of other inputs is built")
       call solve_impact(problem%impact, outcome, error)
       call check(allocated(error) .or. any(outcome%status &
          == [contact_sticking, contact_lasting, contact_resting]), &

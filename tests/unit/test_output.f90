@@ -245,7 +245,7 @@ contains
       call check_text(content(path), "first"//lf//"second", "a file given up changes nothing")
       call check_temporaries(0, "after giving up")
 
-      call execute_command_line("echo left > "//quoted_path(path//".tmp"))
+      call execute_command_line("echo left > "//quoted_path(path//".vcor.tmp"))
       call write_file(path, "another", error)
       call check(.not. allocated(error), "what a killed process has left is replaced")
       call check_text(content(path), "another", "the file is new")

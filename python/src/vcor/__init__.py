@@ -7,6 +7,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from ._library import (
+    DataRangeWarning,
     Error,
     FileError,
     InputError,
@@ -14,11 +15,15 @@ from ._library import (
     NumericalError,
     UnitWarning,
     UsageError,
+    ValidityWarning,
     __version__,
 )
-from .case import Case, Material, read
+from .case import Case, read
+from .material import Material
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from .exchange.cards import card, read_card
     from .exchange.codes import pair
     from .exchange.export import export
@@ -33,6 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Case",
+    "DataRangeWarning",
     "Error",
     "FileError",
     "Fit",
@@ -42,6 +48,7 @@ __all__ = [
     "NumericalError",
     "UnitWarning",
     "UsageError",
+    "ValidityWarning",
     "__version__",
     "bands",
     "card",
@@ -61,9 +68,28 @@ __all__ = [
 
 # Messages of the interpreter name an error as users import it
 for _kind in (
-    Error, FileError, InputError, NoResultWarning, NumericalError, UnitWarning, UsageError,
+    DataRangeWarning, Error, FileError, InputError, NoResultWarning, NumericalError, UnitWarning,
+    UsageError, ValidityWarning,
 ):  # fmt: skip
     _kind.__module__ = "vcor"
+
+
+def _plot(self: Case, kind: str | None = None, **options: Any) -> "Figure":
+    """Solve the case and draw it; needs Matplotlib.
+
+    Parameters
+    ----------
+    kind
+        "history" or "loop", of a case with &sweep groups "sweep" or "map"; None: the first that
+        fits.
+    options
+        Those of `vcor.plot.figure`.
+    """
+    made: Figure = importlib.import_module("vcor.plot").figure(self, kind=kind, **options)
+    return made
+
+
+Case.plot = _plot
 
 #: What needs scipy or reads files, by its module; imported when it is used
 _LATER = {

@@ -8,13 +8,22 @@ import functools
 import importlib
 import io
 import os
+import re
 import signal
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NoReturn
 
-from ._library import Error, FileError, UnitWarning, UsageError, __version__, printable
+from ._library import (
+    DataRangeWarning,
+    Error,
+    FileError,
+    UnitWarning,
+    UsageError,
+    __version__,
+    printable,
+)
 from ._text import OPTIONS, name_flaw, near
 
 FORMATS = ("svg", "pdf", "png")
@@ -25,6 +34,8 @@ class Parser(argparse.ArgumentParser):
 
     #: Option whose value may begin with a dash, as -5C
     signed = ""
+    #: What to say of choices that another command has
+    elsewhere: Mapping[str, str] = {}
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
@@ -40,9 +51,13 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse the options."""
-        what, _, words = message.partition("unrecognized arguments: ")
-        if words and not what:
-            message += near(words.split()[0].partition("=")[0], self._option_string_actions)
+        what, mark, words = message.partition("unrecognized arguments: ")
+        if mark and not what:
+            first = next(iter(words.split()), "")
+            message = f"unrecognized arguments: {words if first else repr(words)}"
+            message += near(first.partition("=")[0], self._option_string_actions)
+        if wrong := re.search(r"invalid choice: '([^']*)'", message):
+            message += self.elsewhere.get(wrong[1].lower(), "")
         raise UsageError(f"{message} ({self.prog} --help says more)")
 
     def options(self, arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -72,7 +87,7 @@ class Parser(argparse.ArgumentParser):
 
 def _note(message: Warning | str, category: type[Warning], *_: Any) -> None:
     """Write a warning on one line."""
-    kind = "warning" if issubclass(category, UnitWarning) else "note"
+    kind = "warning" if issubclass(category, (DataRangeWarning, UnitWarning)) else "note"
     sys.stderr.write(f"vcor: {kind}: {printable(str(message))}\n")
 
 

@@ -7,6 +7,7 @@ import ctypes
 import functools
 import os
 import queue
+import re
 import threading
 from collections.abc import Callable
 from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
@@ -28,6 +29,12 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
 
 
+def _short(line: str) -> str:
+    """A line that can be read, whatever a file has in its cells: no long words, not too many."""
+    line = re.sub(r"(\S{80})\S{120,}(\S{20})", r"\1...\2", line)
+    return line if len(line) <= 1000 else f"{line[:600]} ... {line[-300:]}"
+
+
 class Error(Exception):
     """An error of vcor; its text is the line of the program, `code` the program's exit code."""
 
@@ -36,7 +43,7 @@ class Error(Exception):
     result: Any = None
 
     def __init__(self, message: str = "") -> None:
-        super().__init__(printable(message))
+        super().__init__(_short(printable(message)))
 
 
 class InputError(Error, ValueError):
@@ -72,6 +79,14 @@ class NoResultWarning(UserWarning):
 
 class UnitWarning(UserWarning):
     """A number looks like one in another unit."""
+
+
+class ValidityWarning(UserWarning):
+    """A result is outside of what the model is valid for, or near to that; docs/validity.md."""
+
+
+class DataRangeWarning(UserWarning):
+    """The data behind a material do not cover an impact: its contact time, or its temperature."""
 
 
 class _ErrorStruct(Structure):
@@ -149,17 +164,27 @@ _doubles = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
 _texts = POINTER(c_char_p)
 _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_read": [c_char_p, c_char_p, POINTER(c_void_p)],
+    "vcor_copy": [c_void_p, POINTER(c_void_p)],
+    "vcor_dump": [c_void_p, POINTER(c_void_p)],
+    "vcor_load": [c_char_p, POINTER(c_void_p)],
+    "vcor_name": [c_void_p, POINTER(c_void_p)],
     "vcor_add_materials": [c_void_p, c_void_p],
+    "vcor_replace_material": [c_void_p, c_char_p, c_char_p, c_char_p],
+    "vcor_remove_sweeps": [c_void_p],
     "vcor_set": [c_void_p, c_char_p, c_char_p],
     "vcor_get": [c_void_p, c_char_p, POINTER(c_void_p)],
     "vcor_describe": [c_void_p, c_char_p, POINTER(ColumnStruct)],
     "vcor_case_text": [c_void_p, c_int, POINTER(c_void_p)],
+    "vcor_save": [c_void_p, c_char_p, c_int],
     "vcor_axis": [c_void_p, c_int, POINTER(ColumnStruct), POINTER(c_int), POINTER(c_void_p)],
     "vcor_settle": [c_void_p],
     "vcor_solve": [
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],
     "vcor_warnings": [c_void_p, c_int, _texts, c_int, _doubles, POINTER(c_void_p)],
+    "vcor_beyond_data": [
+        c_void_p, c_int, _texts, c_int, _doubles, _doubles, _doubles, _doubles, POINTER(c_void_p),
+    ],
     "vcor_history": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
@@ -240,7 +265,9 @@ def _forget_worker() -> None:
 
 os.register_at_fork(after_in_child=_forget_worker)
 #: Functions that end at once
-_QUICK = ("vcor_set", "vcor_get", "vcor_describe")
+_QUICK = (
+    "vcor_copy", "vcor_dump", "vcor_load", "vcor_name", "vcor_set", "vcor_get", "vcor_describe",
+)  # fmt: skip
 #: Functions of a material, a microsecond a number at most, and for how many they end at once
 _MODULI, _FEW = ("vcor_relaxation", "vcor_complex_modulus"), 100_000
 
@@ -254,7 +281,12 @@ def call(name: str, *arguments: Any) -> str:
     ]
     function = functools.partial(getattr(_library, name), *given, byref(error))
     # but after an interrupt, what it left may still keep the others waiting
-    quick = name in _QUICK or (name in _MODULI and arguments[2] <= _FEW)
+    quick = (
+        name in _QUICK
+        or (name in _MODULI and arguments[2] <= _FEW)
+        # one point, which a loop asks for again and again
+        or (name == "vcor_warnings" and arguments[3] == 1)
+    )
     code = function() if quick and _worker else _interruptible(function)
     message: str = error.message.decode(errors="replace")
     if code:
@@ -313,12 +345,25 @@ def text_of(name: str, *arguments: Any) -> str | None:
     return take_text(pointer)
 
 
+def bytes_of(name: str, *arguments: Any) -> bytes:
+    """Bytes that a function of the library gives last, of any encoding."""
+    pointer = c_void_p()
+    call(name, *arguments, byref(pointer))
+    return _taken(pointer) or b""
+
+
 def take_text(pointer: c_void_p) -> str | None:
     """A text of the library, which is released."""
+    data = _taken(pointer)
+    return None if data is None else data.decode()
+
+
+def _taken(pointer: c_void_p) -> bytes | None:
+    """Bytes of the library, which are released."""
     if not pointer:
         return None
     try:
-        return ctypes.string_at(pointer).decode()
+        return ctypes.string_at(pointer)
     finally:
         _free(pointer)
 

@@ -77,8 +77,12 @@ def read_text(path: str | os.PathLike[str], errors: str = "replace") -> str:
         raise FileError("the name of a file is empty")
     try:
         return Path(path).read_text(encoding="utf-8-sig", errors=errors)
-    except OSError as error:
-        raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
+    except (OSError, ValueError) as error:
+        # a byte 0 in a name is a ValueError
+        if isinstance(error, UnicodeError):
+            raise
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(f"{os.fspath(path)}: {reason}") from None
 
 
 def document(**entries: Any) -> dict[str, Any]:

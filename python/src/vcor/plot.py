@@ -34,7 +34,8 @@ from . import _command, _text
 from ._command import FORMATS
 from ._library import Floats, InputError, UsageError, numbers, printable, whole
 from ._text import command, option
-from .case import Case, listed
+from .arguments import listed
+from .case import Case
 from .materials.data import (
     Columns,
     Units,
@@ -44,6 +45,7 @@ from .materials.data import (
     plain_name,
     read_data,
 )
+from .materials.select import Where
 from .materials.tables import Choice
 from .materials.units import PREFIXES, ZERO_C
 from .sources import Result, Source, is_result, legends_of
@@ -117,6 +119,7 @@ def figure(
     celsius: bool = False,
     columns: Columns = None,
     units: Units = None,
+    where: Where = None,
 ) -> Figure:
     """Make a figure.
 
@@ -151,6 +154,8 @@ def figure(
         Whether temperatures are shown in degrees Celsius in place of kelvin.
     columns, units
         Which columns of measured data are what, and their units, as for `vcor.read_data`.
+    where
+        Which rows of measured data are taken, as for `vcor.read_data`.
 
     Returns
     -------
@@ -160,7 +165,7 @@ def figure(
     # a Dataset and a name are iterable, too
     files = [files] if isinstance(files, (xr.Dataset, str, Case)) else listed(files)
     results = [Result(source, celsius=celsius) for source in files if is_result(source)]
-    data = _measured(files, columns, units)
+    data = _measured(files, columns, units, where)
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
     if len(results) > MOST:
@@ -912,6 +917,7 @@ def _settings(options: Any) -> dict[str, Any]:
         ) from None
     settings["ranges"] = ranges or None
     settings["columns"], settings["units"] = columns_option(options.columns), options.units
+    settings["where"] = options.where or None
     return {name: value for name, value in settings.items() if value is not None}
 
 
@@ -942,16 +948,18 @@ def _work(options: argparse.Namespace) -> None:
         if options.script:
             written.append(path.with_suffix(".py"))
             _text.write(written[-1], _script(options.files, settings, path).encode())
-        said = _measured(options.files, settings.get("columns"), settings.get("units"))
+        said = _measured(options.files, *map(settings.get, ("columns", "units", "where")))
         if not options.quiet:
             sys.stdout.write("".join(f"{one.attrs['taken']}\n" for one in said))
             sys.stdout.write("".join(f"written {path}\n" for path in written))
 
 
-def _measured(files: Sequence[Any], columns: Columns, units: Units) -> list[pd.DataFrame]:
+def _measured(
+    files: Sequence[Any], columns: Columns, units: Units, where: Where
+) -> list[pd.DataFrame]:
     """Measured data among files of results."""
     names = [one for one in files if not (isinstance(one, (xr.Dataset, Case)) or is_result(one))]
-    choice = Choice(columns, units, len(names))
+    choice = Choice(columns, units, len(names), where)
     data = [read_data(name, choice, whole=False) for name in names]
     choice.refuse_unseen("the files have")
     return data

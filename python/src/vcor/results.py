@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 import xarray as xr
 
+from ._coverage import of_columns
 from ._library import Error, FileError, InputError
 
 #: How files of HDF5 begin
@@ -74,6 +75,7 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
                         f"{found}, expected the same of all")  # fmt: skip
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)
+    attrs |= of_columns(result.data_vars)
     return result.assign_attrs(attrs | dict(result.attrs))
 
 
@@ -135,10 +137,11 @@ def _check(path: str) -> None:
                 raise InputError(f"{path}: this is no HDF5 file")
     except FileNotFoundError:
         raise FileError(f"{path}: there is no such file") from None
-    except OSError as error:
-        if isinstance(error, FileError):
+    except (OSError, ValueError) as error:
+        if isinstance(error, Error):
             raise
-        raise FileError(f"{path}: {error.strerror}") from None
+        # a byte 0 in a name is a ValueError
+        raise FileError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
     if not _survives(path):
         raise FileError(f"{path}: this file is damaged: HDF5 cannot read it")
     try:

@@ -138,7 +138,7 @@ def _moduli_of(path: str) -> dict[str, xr.Dataset]:
     if not relaxation:
         raise InputError(
             f"{path}: no material has valid_from and valid_to, between which its moduli are drawn; "
-            "draw the file that vcor material makes"
+            "draw the file that vcor material makes, or of impacts the results of vcor run, a .h5"
         )
     both = {"relaxation": relaxation, "dynamic": dynamic}
     return {key: xr.concat(some, "material", join="outer") for key, some in both.items()}

@@ -16,19 +16,23 @@ import xarray as xr
 from scipy.special import ndtri
 
 from . import _library, _text
+from ._coverage import unwarned
 from ._differences import slopes
 from ._library import (
     MOST_SEED,
+    Error,
     Floats,
     InputError,
     NumericalError,
     UsageError,
+    ValidityWarning,
     numbers,
     whole,
     within,
 )
 from ._text import option
-from .case import MOST_POINTS, Case, as_case, listed, number, with_material
+from .arguments import MOST_POINTS, listed
+from .case import Case, as_case, number, with_material
 from .materials.advice import percent, product
 from .materials.limits import UNDETERMINED
 from .materials.observations import sharpen
@@ -44,6 +48,8 @@ USUAL = ("cor", "cor_sphere", "contact_time", "max_force", "max_indentation",
 USUAL_BODY = (*USUAL[:-2], "energy_loss")
 #: Percentiles that are given
 PERCENTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
+#: Share of the samples that may have no result: more, and the others no longer stand for all
+MOST_LOST = 0.1
 #: Bootstrap samples for the errors of Sobol' indices
 RESAMPLES = 40
 #: Sobol' indices and their errors, as SALib names them
@@ -70,7 +76,8 @@ class Spread:
         """Distribution of a parameter as `vary={address: text}` has it.
 
         `5%` is the standard deviation of its logarithm (log-normal), `0.1` one in its own unit
-        (normal), `A:B` a uniform distribution from A to B; a number is as with `%`.
+        (normal), `A:B` a uniform distribution from A to B; a number is as with `%`, at most 1. A
+        normal distribution of which one deviation below the value is impossible is refused.
         """
         given = case[address]
         if given is None:
@@ -81,12 +88,18 @@ class Spread:
             raise UsageError(f"{address}: found {given}, expected {one}")
         value = float(given)
         if not isinstance(text, str):
-            text = f"{100 * within(text, address, 0, math.inf)}%"
+            part = within(text, address, 0, math.inf)
+            if part > 1:
+                raise UsageError(f"{address}: found {part:g}, {100 * part:g} % of the value, "
+                                 f"expected at most 1; {part:g} % is {part / 100:g} or "
+                                 f"'{part:g}%'")  # fmt: skip
+            text = f"{100 * part}%"
 
         def spread(deviation: float, sample: Callable[[Floats], Floats]) -> Spread:
             ends = value + deviation * np.array([[-1.0], [1.0]])
             return cls(address, [address], sample, lambda _: ends)
 
+        made = None
         with contextlib.suppress(ValueError):
             if ":" in text:
                 low, high = (float(end) for end in text.split(":"))
@@ -99,9 +112,14 @@ class Spread:
                     by = relative * value
                     return spread(by, lambda share: value * np.exp(relative * ndtri(share)))
             elif (deviation := float(text)) > 0:
-                return spread(deviation, lambda share: value + deviation * ndtri(share))
-        raise UsageError(f"{address}={text}: expected such as 5%, 0.1 (in its unit) or 1:2, "
-                         "larger than 0")  # fmt: skip
+                made = spread(deviation, lambda share: value + deviation * ndtri(share))
+        if made:
+            _check_deviation(case, address, value, deviation, text)
+            return made
+        forms = "5%, 0.1 (in its unit) or 1:2, larger than 0"
+        if not _text.OPTIONS.get():
+            forms = "0.05 or '5%', '0.1' (in its unit) or '1:2', larger than 0"
+        raise UsageError(f"{address}={text}: expected such as {forms}")
 
     @classmethod
     def joint(cls, case: Case, source: Any) -> tuple[Case, Spread]:
@@ -143,6 +161,18 @@ class Spread:
 
         return case, cls("covariance", [fit.addresses[i] for i in kept],
                          lambda share: values * np.exp(ndtri(share) @ root.T), ends)  # fmt: skip
+
+
+def _check_deviation(case: Case, address: str, value: float, deviation: float, text: str) -> None:
+    """Refuse a deviation by which the value becomes one that it cannot have."""
+    try:
+        case.copy()[address] = value - deviation
+    except InputError as error:
+        unit = f" {one}" if (one := case._describe(address).unit) != "1" else ""
+        raise UsageError(
+            f"{address}={text}: found a standard deviation of {text}{unit} of {value:g}{unit}, "
+            f"by which it becomes impossible ({error}); {text} % is {text}%"
+        ) from None
 
 
 @dataclass(frozen=True)
@@ -398,16 +428,25 @@ def propagate(
     starts = np.cumsum([len(spread.addresses) for spread in spreads])[:-1]
     shares = np.split(share, starts, axis=1)
     points = np.hstack([one.sample(u) for one, u in zip(spreads, shares, strict=True)])
-    found = case._solve_all(addresses, points, quantities, threads, None)
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        found = case._solve_all(addresses, points, quantities, threads, None)
     good = np.isfinite(found).all(axis=1).reshape(blocks, -1)
     kept = good.all(axis=1)
-    if kept.sum() < 8:
-        raise NumericalError(f"{case.name}: {(~good).sum()} of {good.size} samples have no result")
+    if kept.sum() < 8 or (~good).sum() > MOST_LOST * good.size:
+        raise NumericalError(
+            f"{case.name}: {(~good).sum()} of {good.size} samples have no result, "
+            f"{_first_failure(case, addresses, points[~good.ravel()][0])}; expected "
+            f"{100 * MOST_LOST:g} % at most: {option('vary', {'ADDRESS': 'LOW:HIGH'})} has ends"
+        )
+    for note in notes:
+        warnings.warn(note.message, note.category, stacklevel=2)
     values = found.reshape(blocks, -1, len(quantities))[kept].reshape(-1, len(quantities))
     sobol = _sobol(problem, values, names, seed)
     value = _values(case, quantities)
     errors = ["cor_error", "cor_sphere_error", "contact_time_error", "max_force_error"]
-    judged = case.solve(quantities=["validity", "validity_cause", "contact_time", *errors])
+    with unwarned(ValidityWarning):
+        judged = case.solve(quantities=["validity", "validity_cause", "contact_time", *errors])
     # with waves = 'body' what is not stated is not known
     better = np.full(len(value), np.nan)
     if case["plate.waves"] != "body":
@@ -460,6 +499,18 @@ def propagate(
     )
 
 
+def _first_failure(case: Case, addresses: list[str], point: Floats) -> str:
+    """Why a sample has no result."""
+    trial = case.copy()
+    try:
+        for address, value in zip(addresses, point, strict=True):
+            trial[address] = float(value)
+        trial.solve(quantities=["cor"])
+    except Error as error:
+        return f"the first one because {error}"
+    return f"the first one at {', '.join(f'{x:.6g}' for x in point)}"
+
+
 def _beyond(case: Case, contact_time: float) -> str:
     """What lies beyond the data of the materials: the temperature, or most of the contact."""
     said = []
@@ -499,8 +550,7 @@ def _checked(case: Case | str | os.PathLike[str], quantities: Sequence[str]) -> 
 def _with_group(case: Case, fit: _Fit) -> Case:
     """The case with the group of a fit in the place of its own material, whose density stays."""
     density = case[f"{fit.name}.density"]
-    case = with_material(case, fit.name, lambda _: "")
-    case.add(Case(fit.group, name=fit.path or "fit.json"))
+    case = with_material(case, fit.name, fit.group, fit.path or "fit.json")
     if density is not None and case[f"{fit.name}.density"] is None:
         case[f"{fit.name}.density"] = density
     return case
@@ -568,7 +618,8 @@ def _has_thickness(case: Case) -> bool:
 
 
 def _values(case: Case, quantities: list[str]) -> Floats:
-    return np.array(list(case.solve(quantities=quantities).values()), dtype=float)
+    with unwarned():
+        return np.array(list(case.solve(quantities=quantities).values()), dtype=float)
 
 
 def _accurate(case: Case | str | os.PathLike[str]) -> Case:

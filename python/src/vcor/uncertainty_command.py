@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _command
+from ._coverage import unwarned
 from ._library import Error
 from ._outputs import finish
 from ._text import option
@@ -59,7 +60,7 @@ def _announce(case: Case, samples: int, threads: int | None) -> None:
     for address, values in axes.items():
         one = with_values(one, {address: float(values[0])})
     begin = time.perf_counter()
-    with contextlib.suppress(Error):
+    with contextlib.suppress(Error), unwarned():
         one.solve(quantities=["cor"])
     impacts = samples * math.prod(len(values) for values in axes.values())
     seconds = (time.perf_counter() - begin) * impacts / (threads or os.cpu_count() or 1)

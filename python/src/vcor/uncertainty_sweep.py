@@ -13,7 +13,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from . import _library, _text
-from ._library import NoResultWarning, NumericalError, UsageError
+from ._coverage import unwarned
+from ._library import NoResultWarning, NumericalError, UsageError, ValidityWarning
 from .case import Case, as_case, with_values
 from .uncertainty import PERCENTILES, USUAL, Spread, Uncertainty, propagate
 
@@ -151,7 +152,7 @@ def bands(
 
 def _every(case: Case) -> list[str]:
     """Quantities that all impacts of a sweep have, but errors and pure numbers that only judge."""
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), unwarned(ValidityWarning):
         warnings.simplefilter("ignore", NoResultWarning)
         found = case.run(progress=False)
     columns = _library.columns(0)

@@ -6,10 +6,11 @@ module vcor_c_api_handle
    use vcor_case_address, only : material_names, resolve, swept_addresses
    use vcor_case_body, only : material_of_case
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
-   use vcor_case_catalogue, only : find_group
-   use vcor_case_checks, only : validate
+   use vcor_case_catalogue, only : catalogue, find_group, groups, real_key
+   use vcor_case_checks, only : note_length, validate
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_data_file, only : read_data
+   use vcor_io_path, only : folder_of, full_path, join_path
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
@@ -20,12 +21,26 @@ module vcor_c_api_handle
    implicit none
    private
 
-   public :: handle_t, open_case, open_points, find_place, build, build_points, find_body
+   public :: handle_t, open_case, open_points, find_place, find_places, follow, whole_folder, note
+   public :: forget, build, build_points, build_own, find_body
+
+   !> Most numbers that are set from call to call
+   integer, parameter :: most_tuned = 16
 
    !> Target of a `vcor_case`
    type :: handle_t
       !> The case as read and set
       type(case_t) :: case
+      !> Folder where the process was when the case was read
+      character(len=:), allocatable :: place
+      !> Numbers that were set since anything else was, shape (n): the case is solved as a point
+      !> with values at these addresses, so that setting them again does not build everything anew
+      type(address_t), allocatable :: tuned(:)
+      !> Addresses of the last single point that was looked at for implausible numbers; unallocated:
+      !> none
+      type(address_t), allocatable :: looked_at(:)
+      !> Notes on implausible numbers that were handed over, without the place of the number
+      character(len=note_length), allocatable :: told(:)
       !> What is common to its impacts
       type(sweep_t) :: sweep
       !> Addresses for which `sweep` was built; unallocated if it must be built
@@ -90,6 +105,90 @@ contains
       if (allocated(message)) call raise(error, error_usage, shortened(address)//': '//message)
    end subroutine find_place
 
+   !> Find the places of addresses in a case
+   subroutine find_places(case, addresses, places, error)
+      type(case_t), intent(in) :: case
+      !> Shape (m)
+      type(c_ptr), intent(in) :: addresses(:)
+      !> Shape (m)
+      type(address_t), allocatable, intent(out) :: places(:)
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      allocate (places(size(addresses)))
+      do i = 1, size(addresses)
+         call find_place(case, fortran(addresses(i)), places(i), error)
+         if (allocated(error)) return
+      end do
+   end subroutine find_places
+
+   !> Find the data files of a case where they were, if the process has gone to another folder
+   subroutine follow(handle)
+      type(handle_t), intent(inout) :: handle
+
+      if (allocated(handle%case%folder)) deallocate (handle%case%folder)
+      if (full_path('') /= handle%place) handle%case%folder = whole_folder(handle)
+   end subroutine follow
+
+   !> Absolute path of the folder of the data files of a case
+   function whole_folder(handle) result(folder)
+      type(handle_t), intent(in) :: handle
+      !> With a slash at its end
+      character(len=:), allocatable :: folder
+
+      folder = join_path(handle%place, folder_of(handle%case%source))
+   end function whole_folder
+
+   !> Note that a value was set: what was built holds if it is one of the numbers that points bring
+   subroutine note(handle, place)
+      type(handle_t), intent(inout) :: handle
+      type(address_t), intent(in) :: place
+
+      logical :: is_number
+
+      if (allocated(handle%solver) .and. place%group == find_group('solver')) &
+         deallocate (handle%solver)
+      is_number = all(groups(place%group)%name /= ['sweep ', 'output', 'case  ']) .and. &
+         (place%element > 0 .or. catalogue(place%row)%value_kind == real_key)
+      if (.not. is_number) then
+         call forget(handle)
+         return
+      end if
+      if (allocated(handle%built_for)) then
+         if (all(.not. handle%built_for == place)) deallocate (handle%built_for)
+      end if
+      if (.not. allocated(handle%tuned)) allocate (handle%tuned(0))
+      if (any(handle%tuned == place)) return
+      ! what the number excludes, as drop_height does velocity, is no longer given
+      handle%tuned = pack(handle%tuned, is_given(handle%tuned))
+      if (size(handle%tuned) == most_tuned) handle%tuned = handle%tuned(:0)
+      handle%tuned = [handle%tuned, place]
+
+   contains
+
+      !> Whether a value is given
+      elemental function is_given(address) result(yes)
+         type(address_t), intent(in) :: address
+         logical :: yes
+
+         type(entry_t) :: entry
+
+         entry = handle%case%entry(address)
+         yes = entry%given
+      end function is_given
+   end subroutine note
+
+   !> Forget what was built and looked at, after a change of the case
+   subroutine forget(handle)
+      type(handle_t), intent(inout) :: handle
+
+      if (allocated(handle%built_for)) deallocate (handle%built_for)
+      if (allocated(handle%tuned)) deallocate (handle%tuned)
+      if (allocated(handle%looked_at)) deallocate (handle%looked_at)
+   end subroutine forget
+
    !> Check a case and read its data files
    subroutine check(case, error)
       type(case_t), intent(inout) :: case
@@ -100,34 +199,33 @@ contains
    end subroutine check
 
    !> Build what is common to the impacts of a case, unless it has been built
-   subroutine build(handle, addresses, values, error)
+   subroutine build(handle, places, values, error, addresses)
       !> The case
       type(handle_t), intent(inout) :: handle
-      !> Addresses with values for each point
-      type(c_ptr), intent(in) :: addresses(:)
+      !> Places with values for each point
+      type(address_t), intent(in) :: places(:)
       !> Values, one column per point
       real(wp), intent(in) :: values(:, :)
       type(error_t), allocatable, intent(out) :: error
+      !> Addresses of the places as the caller has them, for messages; absent: their paths
+      type(c_ptr), intent(in), optional :: addresses(:)
 
       type(case_t) :: case
-      type(address_t) :: places(size(addresses)), address
+      type(address_t) :: address
       type(address_t), allocatable :: own(:)
       type(entry_t) :: entry
       integer :: i, item
 
-      do i = 1, size(addresses)
-         call find_place(handle%case, fortran(addresses(i)), places(i), error)
-         if (allocated(error)) return
-      end do
       if (allocated(handle%built_for)) then
          if (size(handle%built_for) == size(places)) then
             if (all(handle%built_for == places)) return
          end if
          deallocate (handle%built_for)
       end if
+      call follow(handle)
       case = handle%case
       allocate (own, source=swept_addresses(case))
-      do i = 1, size(addresses)
+      do i = 1, size(places)
          if (any(own == places(i))) cycle
          ! a value or a list in the case has no effect on points that bring their own
          address = places(i)
@@ -142,7 +240,11 @@ contains
          ! the &sweep group that a file would have; its values are set later
          call case%add(find_group('sweep'), 0, item)
          entry%given = .true.
-         entry%text = fortran(addresses(i))
+         if (present(addresses)) then
+            entry%text = fortran(addresses(i))
+         else
+            entry%text = case%path(places(i))
+         end if
          entry%origin = shortened(entry%text)
          call case%set(case%address('sweep', 'parameter', item), entry)
          call case%set(case%address('sweep', 'values', item), &
@@ -158,7 +260,7 @@ contains
             //"', expected values for it among those of the points, or no &sweep group")
          return
       end do
-      handle%sweep%grid%is_list = size(addresses) > 0
+      handle%sweep%grid%is_list = size(places) > 0
       if (allocated(handle%solver)) then
          deallocate (handle%sweep%problem%solver)
          allocate (handle%sweep%problem%solver, source=handle%solver)
@@ -167,19 +269,21 @@ contains
    end subroutine build
 
    !> Build the impacts of points
-   subroutine build_points(handle, addresses, values, sweep, error)
+   subroutine build_points(handle, places, values, sweep, error, addresses)
       !> The case
       type(handle_t), intent(inout) :: handle
-      !> Addresses with values for each point, shape (m)
-      type(c_ptr), intent(in) :: addresses(:)
+      !> Places with values for each point, shape (m)
+      type(address_t), intent(in) :: places(:)
       !> Values, shape (m, n)
       real(wp), intent(in) :: values(:, :)
       type(sweep_t), intent(out) :: sweep
       type(error_t), allocatable, intent(out) :: error
+      !> Addresses of the places as the caller has them, for messages; absent: their paths
+      type(c_ptr), intent(in), optional :: addresses(:)
 
       integer :: i
 
-      call build(handle, addresses, values, error)
+      call build(handle, places, values, error, addresses)
       if (allocated(error)) return
       sweep = handle%sweep
       do i = 1, size(sweep%grid%axes)
@@ -188,6 +292,33 @@ contains
          end associate
       end do
    end subroutine build_points
+
+   !> Build the impact of the case as a point with the numbers that were set, or the case as it is
+   !> if there are none or they make no point
+   subroutine build_own(handle, sweep, is_point, error)
+      !> The case
+      type(handle_t), intent(inout) :: handle
+      type(sweep_t), intent(out) :: sweep
+      !> Whether it is a point with the numbers that were set
+      logical, intent(out) :: is_point
+      type(error_t), allocatable, intent(out) :: error
+
+      type(address_t) :: nowhere(0)
+      real(wp), allocatable :: values(:, :)
+      real(wp) :: nothing(0, 1)
+      integer :: i
+
+      is_point = .false.
+      if (allocated(handle%tuned)) is_point = size(handle%tuned) > 0
+      if (is_point) then
+         values = reshape([(handle%case%number(handle%tuned(i)), i=1, size(handle%tuned))], &
+            [size(handle%tuned), 1])
+         call build_points(handle, handle%tuned, values, sweep, error)
+         if (.not. allocated(error)) return
+      end if
+      is_point = .false.
+      call build_points(handle, nowhere, nothing, sweep, error)
+   end subroutine build_own
 
    !> Build a material of a case
    subroutine find_body(self, name, material, error)
@@ -205,6 +336,7 @@ contains
       call demand(name, 'material', error)
       if (allocated(error)) return
 !$omp critical (vcor_c_api)
+      call follow(handle)
       case = handle%case
       item = case%find_material(fortran(name))
       if (item == 0) then

@@ -2,15 +2,9 @@
 !>
 !> A case has an entry for each key of the catalogue, given or by default: a group that may occur
 !> once has its entries from the start, a repeated group has them for each occurrence. An address is
-!> group, item, key and, in a list, element. A sweep sets the number at an address, and
-!> `vcor_case_problem` reads it there.
-!>
-!> The changes of a case are numbered, and an entry stores the number of the change that set its
-!> value. So `latest_change` of some entries shows whether anything derived from them is out of
-!> date.
+!> group, item, key and, in a list, element. `vcor_case_reader` reads the inputs of an impact there.
 module vcor_case_case
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
-      ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       integer_key, last_row, logical_key, real_key, row_for_model, text_key
    use vcor_error, only : error_input, error_t, raise
@@ -49,8 +43,6 @@ module vcor_case_case
       character(len=:), allocatable :: text
       !> A list of numbers in the unit of the key, shape (n)
       real(wp), allocatable :: list(:)
-      !> Number of the change of the case that set the value; 0: still the initial default
-      integer :: changed = 0
    end type entry_t
 
    !> One item of a group
@@ -77,14 +69,14 @@ module vcor_case_case
    type :: case_t
       !> Name of the case file, for messages
       character(len=:), allocatable :: source
+      !> Folder of its data files, with a slash at its end; unallocated: that of `source`
+      character(len=:), allocatable :: folder
       !> Items by group
       type(items_t), allocatable, private :: group(:)
-      !> Number of changes so far
-      integer, private :: changes = 0
    contains
-      procedure :: start, add, adopt, is_materials, source_of, latest_change, model, find_material
-      procedure :: material_of, address, path, row, number, given, unset, oust, refuse
-      procedure :: has_thickness, has_second_sphere
+      procedure :: start, add, adopt, clear, is_materials, source_of, model
+      procedure :: find_material, material_of, address, path, row, number, given, unset, oust
+      procedure :: trace, trace_item, refuse, has_thickness, has_second_sphere
       procedure :: count => count_items
       procedure :: line => line_of_item
       procedure :: entry => entry_at
@@ -122,6 +114,7 @@ contains
       integer :: g, mark
 
       self%source = source
+      if (allocated(self%folder)) deallocate (self%folder)
       if (allocated(self%group)) deallocate (self%group)
       allocate (self%group(size(groups)))
       do g = 1, size(groups)
@@ -202,21 +195,36 @@ contains
       end associate
    end subroutine add
 
-   !> Add a material of another case; it keeps its file and its lines
-   pure subroutine adopt(self, other, item)
+   !> Add a material of another case, or put it in the place of one; it keeps its file and its
+   !> lines
+   pure subroutine adopt(self, other, item, place)
       class(case_t), intent(inout) :: self
       class(case_t), intent(in) :: other
       !> Index of the material in the other case
       integer, intent(in) :: item
+      !> Index of the material that it replaces; absent: none
+      integer, intent(in), optional :: place
 
       integer :: group, own
 
       group = find_group('material')
-      call self%add(group, 0, own)
+      if (present(place)) then
+         own = place
+      else
+         call self%add(group, 0, own)
+      end if
       self%group(group)%item(own) = other%group(group)%item(item)
-      self%group(group)%item(own)%source = other%source
-      self%changes = max(self%changes, other%changes)
+      self%group(group)%item(own)%source = other%source_of(item)
    end subroutine adopt
+
+   !> Remove all items of a group that may be repeated
+   pure subroutine clear(self, group)
+      class(case_t), intent(inout) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+
+      self%group(group)%n = 0
+   end subroutine clear
 
    !> Whether the case has materials only
    pure function is_materials(self) result(yes)
@@ -268,25 +276,6 @@ contains
 
       line = self%group(group)%item(item)%line
    end function line_of_item
-
-   !> Number of the latest change of some values; as long as it is the same, so are they
-   pure function latest_change(self, addresses) result(number)
-      class(case_t), intent(in) :: self
-      !> Their addresses; nowhere is ignored
-      type(address_t), intent(in) :: addresses(:)
-      !> Number of the change; 0: none
-      integer :: number
-
-      integer :: i
-
-      number = 0
-      do i = 1, size(addresses)
-         associate (at => addresses(i))
-            if (at%group > 0) &
-               number = max(number, self%group(at%group)%item(at%item)%entry(at%row)%changed)
-         end associate
-      end do
-   end function latest_change
 
    !> Value of the selector of an item, such as the model of a material
    pure function model(self, group, item) result(word)
@@ -521,7 +510,7 @@ contains
             call move_alloc(list, item%entry(address%row)%list)
          end if
       end associate
-      call note_change(self, address, entry%given)
+      call mark(self, address, entry%given)
       if (address == self%address('contact', 'mechanics') &
           .or. address == self%address('plate', 'base') &
           .or. address == self%address('plate', 'surface_radius') &
@@ -545,9 +534,9 @@ contains
       has = self%number(self%address('plate', 'surface_radius')) > 0.0_wp
    end function has_second_sphere
 
-   !> Set the keys of the mechanics that the user has not given: by `mechanics` waves, law and pair;
-   !> without it a plate on a base has no waves, and with it a second sphere has none either; law
-   !> and pair are also those of the coupled contact where that is solved
+   !> Set the keys of the mechanics that the user has not given. By `mechanics` waves, law and
+   !> pair; without it a plate on a base has no waves, and with it a second sphere has none either.
+   !> Law and pair are also those of the coupled contact where that is solved
    pure subroutine choose_mechanics(self)
       type(case_t), intent(inout) :: self
 
@@ -581,7 +570,7 @@ contains
       if (is_chosen) call self%set(self%address(group, key), text, given=.false.)
    end subroutine choose
 
-   !> Set a number without checks: cheap, for a sweep. An equal number is not a change
+   !> Set a number without checks
    pure subroutine set_number(self, address, number)
       class(case_t), intent(inout) :: self
       !> Address of a real, integer or logical key, or of a number in a list
@@ -589,15 +578,6 @@ contains
       !> The number, in the unit of the key
       real(wp), intent(in) :: number
 
-      real(wp) :: before
-
-      before = self%number(address)
-      if (ieee_is_finite(before) .and. ieee_is_finite(number)) then
-         if (.not. abs(number - before) > 0.0_wp) then
-            call mark(self, address, .true.)
-            return
-         end if
-      end if
       associate (entry => self%group(address%group)%item(address%item)%entry(address%row))
          if (address%element > 0) then
             entry%list(address%element) = number
@@ -605,7 +585,7 @@ contains
             entry%number = number
          end if
       end associate
-      call note_change(self, address, .true.)
+      call mark(self, address, .true.)
    end subroutine set_number
 
    !> Set a text without checks
@@ -618,7 +598,7 @@ contains
       logical, intent(in) :: given
 
       self%group(address%group)%item(address%item)%entry(address%row)%text = text
-      call note_change(self, address, given)
+      call mark(self, address, given)
    end subroutine set_text
 
    !> Set a list without checks
@@ -632,28 +612,8 @@ contains
       logical, intent(in) :: given
 
       self%group(address%group)%item(address%item)%entry(address%row)%list = list
-      call note_change(self, address, given)
-   end subroutine set_list
-
-   !> Record that an entry has a new value
-   pure subroutine note_change(self, address, given)
-      class(case_t), intent(inout) :: self
-      type(address_t), intent(in) :: address
-      !> Whether the user gave the value
-      logical, intent(in) :: given
-
       call mark(self, address, given)
-      call number_change(self, address)
-   end subroutine note_change
-
-   !> Give the entry at an address a new change number
-   pure subroutine number_change(self, address)
-      class(case_t), intent(inout) :: self
-      type(address_t), intent(in) :: address
-
-      self%changes = self%changes + 1
-      self%group(address%group)%item(address%item)%entry(address%row)%changed = self%changes
-   end subroutine number_change
+   end subroutine set_list
 
    !> Record that an entry has a value; if it is given, its group counts as present
    pure subroutine mark(self, address, given)
@@ -676,7 +636,6 @@ contains
 
       call set_default(self%group(address%group)%item(address%item)%entry(address%row), &
          address%row)
-      call number_change(self, address)
    end subroutine unset
 
    !> Reset the key that excludes a given one, as drop_height does velocity, and vice versa
@@ -699,6 +658,41 @@ contains
          if (entry%given .and. (always .or. .not. allocated(entry%origin))) call self%unset(other)
       end do
    end subroutine oust
+
+   !> State where the value at an address comes from
+   pure subroutine trace(self, address, line, origin)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
+      !> Line of the case file; 0 if it is not there
+      integer, intent(in) :: line
+      !> Origin if it is not the case file; otherwise empty
+      character(len=*), intent(in) :: origin
+
+      associate (entry => self%group(address%group)%item(address%item)%entry(address%row))
+         entry%line = line
+         if (allocated(entry%origin)) deallocate (entry%origin)
+         if (origin /= '') entry%origin = origin
+      end associate
+   end subroutine trace
+
+   !> State where an item of a group comes from
+   pure subroutine trace_item(self, group, item, line, source)
+      class(case_t), intent(inout) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Index of the item
+      integer, intent(in) :: item
+      !> First line of the group in its file; 0 if it is not there
+      integer, intent(in) :: line
+      !> Its file
+      character(len=*), intent(in) :: source
+
+      associate (place => self%group(group)%item(item))
+         place%line = line
+         if (allocated(place%source)) deallocate (place%source)
+         if (source /= self%source) place%source = source
+      end associate
+   end subroutine trace_item
 
    !> Raise an error about a key
    pure subroutine refuse(self, group, key, item, message, error)

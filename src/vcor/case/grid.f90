@@ -11,12 +11,13 @@ module vcor_case_grid
    use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, most_points, real_key, &
       row_for_model
    use vcor_number, only : log_spacing, real_text, spaced
+   use vcor_rounded, only : plain_number
    use vcor_text, only : integer_text, link_name, shortened
    use vcor_words, only : join_words
    implicit none
    private
 
-   public :: axis_t, grid_t, new_grid
+   public :: axis_t, grid_t, new_grid, coordinates
 
    !> Largest number of parameters: each is a dimension in the HDF5 file, which has at most 32
    integer, parameter :: most_axes = 32
@@ -325,5 +326,22 @@ contains
          gap = gap/3
       end do
    end subroutine sort
+
+   !> Names and values of the swept parameters at a point
+   function coordinates(grid, point) result(text)
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: point
+      character(len=:), allocatable :: text
+
+      integer :: i, places(size(grid%axes))
+
+      places = grid%places(point)
+      text = ''
+      do i = 1, size(places)
+         text = text//', '//grid%axes(i)%name//' = ' &
+            //plain_number(grid%axes(i)%values(places(i)), 8)
+      end do
+      text = text(3:)
+   end function coordinates
 
 end module vcor_case_grid

@@ -5,7 +5,9 @@
 !> E(t) = E(valid_from) before it and E(valid_to) after it, the effect of the extrapolation on the
 !> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
 !> of exponentials would continue to grow before the band. A plate of any thickness has the change
-!> of the thin plate, a half space or a layer on a base that without waves.
+!> of the thin plate, a half space or a layer on a base that without waves. Where direct cannot
+!> solve this, as a layer under a ball that deforms as well, method coupled solves both impacts with
+!> the mechanics of the case; it uses the modulus itself, too.
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
@@ -44,6 +46,8 @@ module vcor_case_identified
       real(wp) :: held = 0.0_wp
       !> Whether that impact has a result
       logical :: solved = .false.
+      !> Whether the impact with the unchanged modulus has one, without which there is no comparison
+      logical :: compared = .false.
       !> Difference of both cor [-]; a huge number if one has no result
       real(wp) :: change = huge(1.0_wp)
    end type reliance_t
@@ -73,6 +77,19 @@ contains
       if (is_thick .or. base /= 'free') waves = 'none'
       call case%set(case%address('plate', 'waves'), waves, given=.true.)
    end subroutine simplify
+
+   !> Take the mechanics of a case itself, with method coupled
+   pure subroutine use_coupled(case, other)
+      type(case_t), intent(in) :: case
+      !> The case to be solved
+      type(case_t), intent(inout) :: other
+
+      other = case
+      call other%set(other%address('solver', 'method'), 'coupled', given=.true.)
+      call other%set(other%address('solver', 'accuracy'), 0.1_wp*reported_change)
+      call other%unset(other%address('solver', 'time_step'))
+      call other%unset(other%address('solver', 'scheme'))
+   end subroutine use_coupled
 
    !> Find the reliance of an impact on a material beyond its data
    subroutine find_reliance(reliance, case, item, contact_time)
@@ -121,7 +138,15 @@ contains
       call other%set(other%address('solver', 'accuracy'), 0.1_wp*reported_change)
       call other%unset(other%address('solver', 'time_step'))
       call solve_case(other, free, error)
-      if (allocated(error) .or. free%status /= contact_separated) return
+      reliance%compared = .not. allocated(error)
+      if (reliance%compared) reliance%compared = free%status == contact_separated
+      if (.not. reliance%compared) then
+         call use_coupled(case, other)
+         call solve_case(other, free, error)
+         reliance%compared = .not. allocated(error)
+         if (reliance%compared) reliance%compared = free%status == contact_separated
+      end if
+      if (.not. reliance%compared) return
       reliance%cor = merge(free%cor_sphere, free%cor, is_body)
       call other%set(other%address('material', 'model', item), 'table', given=.true.)
       call take_as_is(other, item)

@@ -1,5 +1,6 @@
 !> The mechanics of a case as its keys have them: features, method in use, and what has no effect
 module vcor_case_mechanics
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : find_group
    use vcor_kinds, only : wp
@@ -20,6 +21,7 @@ contains
       !> Shape (size(features))
       logical :: has(size(features))
 
+      real(wp) :: gravity
       character(len=:), allocatable :: base, law, pair, scheme, waves
       integer :: order
 
@@ -36,7 +38,8 @@ contains
       has(of_boltzmann) = law == 'boltzmann'
       has(of_receding) = law == 'receding'
       has(of_eq1) = pair == 'eq1' .and. why_no_pair(case) == ''
-      has(of_gravity) = case%number(case%address('impact', 'gravity')) > 0.0_wp
+      gravity = case%number(case%address('impact', 'gravity'))
+      if (.not. ieee_is_nan(gravity)) has(of_gravity) = gravity > 0.0_wp
       ! a rigid plate has neither waves nor a layer
       if (model_of(case, 'plate') == 'rigid') return
       has(of_body) = waves == 'body'

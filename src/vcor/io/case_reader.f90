@@ -6,7 +6,8 @@ module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
    use vcor_io_file, only : read_text_file
-   use vcor_io_path, only : folder_of, path_from
+   use vcor_io_data_file, only : data_folder, file_keys
+   use vcor_io_path, only : path_from
    use vcor_case_values, only : convert, convert_text, range_message
    use vcor_case_address, only : resolve, unknown_group, unknown_key
    use vcor_case_case, only : address_t, case_t, entry_t
@@ -67,24 +68,28 @@ contains
             //": the file is empty, expected groups such as &impact velocity = 5.0 /")
    end subroutine read_case_text
 
-   !> Add the materials of another file to a case; their data files are relative to its folder
-   subroutine add_materials(case, materials)
+   !> Add the materials of another file to a case, or put its only one in the place of one of the
+   !> case; their data files are relative to its folder
+   subroutine add_materials(case, materials, place)
       type(case_t), intent(inout) :: case
       !> A case with materials only
       type(case_t), intent(in) :: materials
+      !> Index of the material that is replaced; absent: none
+      integer, intent(in), optional :: place
 
-      character(len=*), parameter :: keys(2) = [character(len=10) :: 'file', 'shift_file']
       type(address_t) :: address
       character(len=:), allocatable :: file
-      integer :: i, item
+      integer :: i, item, own
 
       do item = 1, materials%count('material')
-         call case%adopt(materials, item)
-         do i = 1, size(keys)
-            address = case%address('material', trim(keys(i)), case%count('material'))
-            call case%get('material', trim(keys(i)), file, address%item)
-            if (file /= '') call case%set(address, path_from(folder_of(case%source), &
-               folder_of(materials%source), file), given=.true.)
+         call case%adopt(materials, item, place)
+         own = case%count('material')
+         if (present(place)) own = place
+         do i = 1, size(file_keys)
+            address = case%address('material', trim(file_keys(i)), own)
+            call case%get('material', trim(file_keys(i)), file, own)
+            if (file /= '') call case%set(address, path_from(data_folder(case), &
+               data_folder(materials), file), given=.true.)
          end do
       end do
    end subroutine add_materials

@@ -17,7 +17,10 @@ module vcor_io_data_file
    implicit none
    private
 
-   public :: read_data, data_file
+   public :: read_data, data_file, data_folder, file_keys
+
+   !> Keys of &material that name a data file
+   character(len=*), parameter :: file_keys(*) = [character(len=10) :: 'file', 'shift_file']
 
    !> Names of the columns, separated by blanks
    character(len=*), parameter :: time_names = 't time', &
@@ -99,7 +102,7 @@ contains
       end subroutine read_file
    end subroutine read_data
 
-   !> Path of a data file of a material, relative to the folder of the case file
+   !> Path of a data file of a material, relative to the folder of the case
    pure function data_file(case, item, key) result(path)
       type(case_t), intent(in) :: case
       integer, intent(in) :: item
@@ -113,8 +116,18 @@ contains
       else
          call case%get('material', 'file', path, item)
       end if
-      if (path /= '') path = join_path(folder_of(case%source), path)
+      if (path /= '') path = join_path(data_folder(case), path)
    end function data_file
+
+   !> Folder of the data files of a case
+   pure function data_folder(case) result(folder)
+      type(case_t), intent(in) :: case
+      !> With a slash at its end; empty for the current one
+      character(len=:), allocatable :: folder
+
+      folder = folder_of(case%source)
+      if (allocated(case%folder)) folder = case%folder
+   end function data_folder
 
    !> Read two columns with or without names
    subroutine read_plain(text, name, plain, error)

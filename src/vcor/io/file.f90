@@ -1,9 +1,10 @@
 !> Reads text files as a whole, writes files that appear complete or not at all, and standard output
 !>
-!> A file is written under a temporary name, NAME.tmp, in the same folder. It is created
-!> exclusively, written, written through to the disk and renamed, with the permissions that the
-!> umask leaves; every status is checked. So the final name has the old file or the new one,
-!> whenever the process, the disk or the power fails.
+!> A file is written under a temporary name, NAME.vcor.tmp, in the same folder. The name is one that
+!> only vcor gives: a NAME.tmp may be a file of the user's. It is created exclusively, written,
+!> written through to the disk and renamed, with the permissions that the umask leaves; every status
+!> is checked. So the final name has the old file or the new one, whenever the process, the disk or
+!> the power fails.
 !>
 !>  - On failure the temporary file is removed. A killed process leaves it behind, and the next one
 !>    removes it and begins its own. Of two processes that write the same name at once the one that
@@ -47,6 +48,10 @@ module vcor_io_file
       type(c_ptr), private :: stream = c_null_ptr
    end type output_file_t
 
+   !> End of the temporary names, which no file has that vcor has not written
+   character(len=*), parameter :: temporary_end = '.vcor.tmp'
+   !> Longest name of a file that Linux takes [bytes]
+   integer, parameter :: longest_name = 255
    !> Largest file that is read [bytes]; a case has a few hundred bytes, a long Prony series a few
    !> thousand, a table of 10,000 points half a million
    integer, parameter :: largest_file = 4*1024**2
@@ -103,11 +108,15 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
+      integer :: separator
 
       call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
-      file%temporary = file%path//'.tmp'
+      ! of a name as long as the system takes it, the end
+      separator = index(file%path, '/', back=.true.)
+      file%temporary = file%path(:separator)//file%path(max(separator, &
+         len(file%path) - longest_name + len(temporary_end)) + 1:)//temporary_end
       call remove_file(file%temporary)
       file%stream = c_fopen(c_text(file%temporary), c_text('w+x'))
       reason = last_errno()

@@ -12,7 +12,7 @@ module vcor_io_path
    private
 
    public :: file_exists, plain_file_exists, directory_exists, make_directory
-   public :: folder_of, join_path, path_from, same_file, quoted_path
+   public :: folder_of, join_path, path_from, full_path, same_file, quoted_path
    public :: anything_at, check_name, check_plain, check_readable, raise_system
 
 contains
@@ -163,20 +163,32 @@ contains
       character(len=*), intent(in) :: name
       character(len=:), allocatable :: path
 
-      character(kind=c_char) :: root(longest_path)
-      integer :: i
+      character(len=:), allocatable :: root
 
       path = name
       if (viewer == directory) return
       path = join_path(directory, name)
       if (viewer == '' .or. index(path, '/') == 1) return
-      if (.not. c_associated(c_realpath(c_text(directory//'.'), root))) return
+      root = full_path(directory)
+      if (root /= '') path = join_path(root, name)
+   end function path_from
+
+   !> Absolute path of a directory, without links and dots
+   function full_path(directory) result(path)
+      !> Empty for the current one, otherwise with a slash at its end
+      character(len=*), intent(in) :: directory
+      !> Empty if there is no such directory
+      character(len=:), allocatable :: path
+
+      character(kind=c_char) :: root(longest_path)
+      integer :: i
+
       path = ''
+      if (.not. c_associated(c_realpath(c_text(directory//'.'), root))) return
       do i = 1, findloc(root, c_null_char, dim=1) - 1
          path = path//root(i)
       end do
-      path = join_path(path, name)
-   end function path_from
+   end function full_path
 
    !> Whether two paths are one file, by name and directory; the file need not exist
    function same_file(one, other) result(same)

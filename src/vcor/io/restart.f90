@@ -1,26 +1,31 @@
 !> The file of an unfinished sweep, `STEM.part`, from which `--resume` continues
 !>
-!> It is text. The first line has the version of the program and a check sum of the case; then there
-!> is a line for each finished point, all of one length, in any order:
+!> It is text. The first line has the version of the program, a check sum of the case and the
+!> columns of the summary, with the labels of those that are texts; then there is a line for each
+!> finished point, all of one length, in any order:
 !>
-!>     # vcor VERSION HASH
-!>     INDEX BITS BITS ...
+!>     # vcor VERSION HASH cor cor_sphere ... status=separated,no_separation,...
+!>     INDEX BITS BITS ... CHECK
 !>
-!> with the number of the point and the bits of each number of its outcome (`row_of`) as 16
-!> hexadecimal digits. The file is created exclusively, and only ever appended to. If the process
-!> is killed, or the disk is full, the last line may be incomplete; it is dropped.
+!> with the number of the point, the bits of each number of its outcome (`row_of`) as 16 hexadecimal
+!> digits, and the CRC-32 of the line up to there in as many, which every single wrong bit changes.
+!> The file is created exclusively, and only ever appended to. If the process is killed, or the disk
+!> is full, the last line may be incomplete; it is dropped. A line that is wrong in any other way is
+!> refused with the whole file.
 module vcor_io_restart
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only : int32, int64
    use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_file, error_t, raise
+   use vcor_impact_trajectory, only : contact_separated
    use vcor_io_file, only : remove_file, write_all
    use vcor_io_path, only : check_plain, check_readable, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_text, c_truncate, errno_exists, &
       last_errno
    use vcor_kinds, only : wp
-   use vcor_sweep_quantity, only : labels_of, point_pending, quantity_names, quantity_t, summary_t
+   use vcor_sweep_quantity, only : labels_of, point_pending, quantity_t, summary_t
    use vcor_text, only : integer_text, shortened
    use vcor_version, only : version
    implicit none
@@ -38,13 +43,16 @@ module vcor_io_restart
       procedure :: close => close_restart
    end type restart_t
 
-   !> Digits of an index, and of a number
+   !> Digits of an index, and of a number or a check sum
    integer, parameter :: index_width = 10, number_width = 16
+   !> Columns that a point has if the bodies separated
+   character(len=*), parameter :: known(*) = [character(len=12) :: 'cor', 'cor_sphere', &
+      'contact_time']
    character(len=*), parameter :: digits = '0123456789abcdef'
 
 contains
 
-   !> Check sum of what a sweep is: the completed case, the points of its data files and the columns
+   !> Check sum of what a sweep is: the completed case and the points of its data files
    function hash_of(case) result(hash)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
@@ -55,7 +63,7 @@ contains
          [character(len=10) :: 'shift_file', 'times', 'moduli']
       integer :: i, item
 
-      hash = crc32(case_text(case, complete=.true.)//quantity_names(), 0_int32)
+      hash = crc32(case_text(case, complete=.true.), 0_int32)
       do item = 1, case%count('material')
          do i = 1, size(keys)
             call case%get('material', trim(keys(i)), numbers, item)
@@ -90,7 +98,7 @@ contains
       self%stream = c_fopen(c_text(path), c_text('wx'))
       reason = last_errno()
       if (c_associated(self%stream)) then
-         call append(self, head(hash), error)
+         call append(self, head(hash, summary%quantities), error)
          if (.not. allocated(error)) call self%put(pack([(i, i=1, size(summary%status))], &
             summary%status /= point_pending), summary, error)
       else if (reason == errno_exists) then
@@ -119,8 +127,8 @@ contains
       integer(int32), intent(in) :: hash
       !> Outcomes, all pending; on return those of the file are there
       type(summary_t), intent(inout) :: summary
-      !> Error of code `error_file` if the file is of another case or version, damaged or not
-      !> readable; unallocated on success
+      !> Error of code `error_file` if the file is of another case, version or columns, damaged or
+      !> not readable; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer(int64) :: length
@@ -129,7 +137,8 @@ contains
 
       self%path = path
       call check_plain(path, error)
-      if (.not. allocated(error)) call read_file(path, head(hash), summary, length, error)
+      if (.not. allocated(error)) &
+         call read_file(path, head(hash, summary%quantities), summary, length, error)
       if (allocated(error)) return
       failed = c_truncate(c_text(path), int(length, c_int64_t)) /= 0
       reason = last_errno()
@@ -141,7 +150,7 @@ contains
       if (failed) then
          call raise_system(error, 'cannot write '//quoted_path(path), reason)
       else if (length == 0) then
-         call append(self, head(hash), error)
+         call append(self, head(hash, summary%quantities), error)
       end if
    end subroutine open_restart
 
@@ -157,14 +166,16 @@ contains
       !> Set as by `open_restart`
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: line
+      character(len=:), allocatable :: line, flaw
       real(wp), allocatable :: bounds(:, :), row(:)
+      integer, allocatable :: needed(:)
       integer(int64) :: bytes
       integer :: place, status, unit
 
       length = 0
       allocate (bounds, source=bounds_of(summary%quantities))
       allocate (row(size(bounds, 2)))
+      needed = needed_places(summary%quantities)
       call check_readable(path, 'the file of an unfinished sweep', error)
       if (allocated(error)) return
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
@@ -178,20 +189,29 @@ contains
       read (unit, iostat=status) line
       ! a first line that is incomplete is dropped like any other
       if (status == 0 .and. line /= expected(:len(line))) then
-         call raise(error, error_file, quoted_path(path)//' is not of this case and version: it ' &
-            //"begins with '"//first_line(line)//"', expected '"//first_line(expected) &
-            //"'; delete it, or resume what it is of")
+         call raise(error, error_file, quoted_path(path)//' is not of this case and version: ' &
+            //difference(line, expected)//'; delete it, or resume what it is of')
       else if (status == 0 .and. len(line) == len(expected)) then
          length = len(expected)
          line = repeat(' ', line_length(size(row)))
          do
             read (unit, iostat=status) line
             if (status /= 0) exit
-            call read_line(line, bounds, size(summary%status), place, row)
-            if (place == 0) then
+            call read_line(line, bounds, place, row, flaw)
+            if (flaw == '') then
+               if (place < 1 .or. place > size(summary%status)) then
+                  flaw = 'the sweep has no point '//integer_text(place)
+               else if (summary%status(place) /= point_pending) then
+                  flaw = 'it is the second line of point '//integer_text(place)
+               else if (nint(row(size(row) - 1)) == contact_separated &
+                        .and. any(ieee_is_nan(row(needed)))) then
+                  flaw = 'point '//integer_text(place)//' has separated without a result'
+               end if
+            end if
+            if (flaw /= '') then
                call raise(error, error_file, quoted_path(path)//' is damaged in line ' &
-                  //integer_text(1 + int((length - len(expected))/len(line)) + 1) &
-                  //', expected the bits of a point; delete the file to begin anew')
+                  //integer_text(1 + int((length - len(expected))/len(line)) + 1)//': '//flaw &
+                  //'; delete the file to begin anew')
                exit
             end if
             call summary%put(place, row)
@@ -203,13 +223,82 @@ contains
       close (unit)
    end subroutine read_file
 
-   !> Text up to the end of its first line, for messages
-   pure function first_line(text) result(line)
-      character(len=*), intent(in) :: text
-      character(len=:), allocatable :: line
+   !> What differs in the first line, for messages
+   pure function difference(found, expected) result(text)
+      !> Beginning of the file, and first line that it should have
+      character(len=*), intent(in) :: found, expected
+      character(len=:), allocatable :: text
 
-      line = shortened(text(:index(text//new_line('a'), new_line('a')) - 1))
-   end function first_line
+      character(len=:), allocatable :: ours, theirs
+      integer :: i
+
+      !> Words before the columns
+      integer, parameter :: lead = 4
+
+      do i = 1, lead
+         if (word_of(found, i) == word_of(expected, i)) cycle
+         text = "it begins with '"//shortened(up_to_word(found, lead))//"', expected '" &
+            //up_to_word(expected, lead)//"'"
+         return
+      end do
+      i = lead + 1
+      do while (word_of(found, i) == word_of(expected, i) .and. word_of(expected, i) /= '')
+         i = i + 1
+      end do
+      theirs = shortened(word_of(found, i))
+      ours = word_of(expected, i)
+      text = 'its column '//integer_text(i - lead)//" is '"//theirs//"', expected '"//ours//"'"
+      if (ours == '') text = 'it has the column '//integer_text(i - lead)//", '"//theirs &
+         //"', expected "//integer_text(i - 1 - lead)//' columns'
+      if (theirs == '') text = 'it has no column '//integer_text(i - lead)//", expected '"//ours &
+         //"'"
+   end function difference
+
+   !> Word of the first line of a text
+   pure function word_of(text, number) result(word)
+      character(len=*), intent(in) :: text
+      !> Number of the word, from 1
+      integer, intent(in) :: number
+      !> The word; empty if there are fewer
+      character(len=:), allocatable :: word
+
+      integer :: before
+
+      before = len(up_to_word(text, number - 1))
+      word = up_to_word(text, number)
+      if (before > 0) before = before + 1
+      word = word(min(before, len(word)) + 1:)
+   end function word_of
+
+   !> The first words of the first line of a text
+   pure function up_to_word(text, number) result(words)
+      character(len=*), intent(in) :: text
+      !> How many
+      integer, intent(in) :: number
+      !> The words; the whole line if it has fewer
+      character(len=:), allocatable :: words
+
+      integer :: i, last
+
+      last = index(text//new_line('a'), new_line('a')) - 1
+      words = ''
+      do i = 1, number
+         if (len(words) == last) return
+         words = text(:len(words) + max(1, scan(text(len(words) + 2:last)//' ', ' ')))
+      end do
+   end function up_to_word
+
+   !> Places in a row of the numbers that every point with a result has
+   pure function needed_places(quantities) result(places)
+      type(quantity_t), intent(in) :: quantities(:)
+      !> Places, shape (n)
+      integer, allocatable :: places(:)
+
+      integer :: i
+
+      places = pack([(i, i=1, size(quantities))], [(any(known == quantities(i)%name), &
+         i=1, size(quantities))])
+   end function needed_places
 
    !> Smallest and largest values of the numbers of a row: those of texts have a meaning only there
    pure function bounds_of(quantities) result(bounds)
@@ -231,24 +320,28 @@ contains
    end function bounds_of
 
    !> Read the line of a point
-   pure subroutine read_line(line, bounds, points, place, row)
+   pure subroutine read_line(line, bounds, place, row, flaw)
       character(len=*), intent(in) :: line
       !> Bounds of its numbers, shape (2, numbers)
       real(wp), intent(in) :: bounds(:, :)
-      !> Number of points of the sweep
-      integer, intent(in) :: points
-      !> Number of the point; 0 if the line is damaged
+      !> Number of the point, 0 if the line is damaged
       integer, intent(out) :: place
-      !> Its numbers
+      !> Its numbers; undefined if the line is damaged
       real(wp), intent(out) :: row(:)
+      !> What is wrong with the line; empty if nothing is
+      character(len=:), allocatable, intent(out) :: flaw
 
       integer(int64) :: bits
       integer :: digit, i, j, k, number, status
 
       place = 0
+      flaw = 'it has the wrong check sum'
+      k = len(line) - 1
+      if (line(k + 1:) /= new_line('a')) return
+      if (line(k - number_width:k) /= check_of(line(:k - number_width - 1))) return
+      flaw = 'expected the bits of a point'
       read (line(:index_width), '(i10)', iostat=status) number
-      if (status /= 0 .or. line(len(line):) /= new_line('a')) return
-      if (number < 1 .or. number > points) return
+      if (status /= 0) return
       k = index_width
       do i = 1, size(row)
          if (line(k + 1:k + 1) /= ' ') return
@@ -267,6 +360,7 @@ contains
          if (abs(row(i) - anint(row(i))) > 0.0_wp) return
       end do
       place = number
+      flaw = ''
    end subroutine read_line
 
    !> Append finished points
@@ -320,7 +414,8 @@ contains
          end do
          k = k + 1 + number_width
       end do
-      line(k + 1:) = new_line('a')
+      line(k + 1:k + 1 + number_width) = check_of(line(:k))
+      line(k + 2 + number_width:) = new_line('a')
    end subroutine write_line
 
    !> Length of the line of a point with its end [bytes]
@@ -329,19 +424,42 @@ contains
       integer, intent(in) :: numbers
       integer :: length
 
-      length = index_width + (1 + number_width)*numbers + 1
+      length = index_width + (1 + number_width)*(numbers + 1) + 1
    end function line_length
 
+   !> End of the line of a point: a blank and its check sum
+   pure function check_of(text) result(check)
+      !> The line up to there
+      character(len=*), intent(in) :: text
+      character(len=1 + number_width) :: check
+
+      write (check, '(1x, z16.16)') iand(int(crc32(text, 0_int32), int64), 4294967295_int64)
+   end function check_of
+
    !> First line
-   pure function head(hash) result(line)
+   pure function head(hash, quantities) result(line)
       !> Check sum of the case
       integer(int32), intent(in) :: hash
+      !> The columns
+      type(quantity_t), intent(in) :: quantities(:)
       character(len=:), allocatable :: line
 
       character(len=8) :: number
+      integer :: i, j
 
       write (number, '(z8.8)') hash
-      line = '# vcor '//version//' '//number//new_line('a')
+      line = '# vcor '//version//' '//number
+      do i = 1, size(quantities)
+         line = line//' '//trim(quantities(i)%name)
+         if (quantities(i)%labels == '') cycle
+         associate (labels => labels_of(quantities(i)))
+            line = line//'='//trim(labels(1))
+            do j = 2, size(labels)
+               line = line//','//trim(labels(j))
+            end do
+         end associate
+      end do
+      line = line//new_line('a')
    end function head
 
    !> Append text to the file
@@ -384,14 +502,21 @@ contains
 
       !> The divisor, the lowest power in the highest bit: 0xEDB88320
       integer(int32), parameter :: divisor = -306674912_int32
+      !> Remainders of four bits; a line of a sweep is divided four bits at a time
+      integer(int32) :: remainders(0:15)
       integer :: bit, i
 
+      do i = 0, 15
+         remainders(i) = int(i, int32)
+         do bit = 1, 4
+            remainders(i) = ieor(shiftr(remainders(i), 1), iand(remainders(i), 1_int32)*divisor)
+         end do
+      end do
       crc = not(before)
       do i = 1, len(text)
          crc = ieor(crc, int(iachar(text(i:i)), int32))
-         do bit = 1, 8
-            crc = ieor(shiftr(crc, 1), iand(crc, 1_int32)*divisor)
-         end do
+         crc = ieor(shiftr(crc, 4), remainders(iand(crc, 15_int32)))
+         crc = ieor(shiftr(crc, 4), remainders(iand(crc, 15_int32)))
       end do
       crc = not(crc)
    end function crc32

@@ -10,10 +10,11 @@
 !> M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701,
 !> doi:10.1021/ja01619a008. The ratio of densities in their b_T is left out.
 module vcor_material_shift
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : gas_constant, wp
    use vcor_material_type, only : parameter_t
-   use vcor_number, only : positive
+   use vcor_number, only : identity_of, positive
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    implicit none
    private
@@ -54,12 +55,26 @@ module vcor_material_shift
       real(wp), allocatable :: temperatures(:)
       !> log10 a_T there, not increasing, shape (n)
       real(wp), allocatable :: logarithms(:)
+      !> Identity of the table, see `identity_of`
+      integer(int64) :: identity = 0_int64
    contains
+      procedure :: set_table
       !> a_T and b_T at a temperature
       procedure :: find_factors
    end type shift_t
 
 contains
+
+   !> Set the table
+   pure subroutine set_table(self, temperatures, logarithms)
+      class(shift_t), intent(inout) :: self
+      !> Temperatures [K], increasing, and log10 a_T there, not increasing, shape (n)
+      real(wp), intent(in) :: temperatures(:), logarithms(:)
+
+      self%temperatures = temperatures
+      self%logarithms = logarithms
+      self%identity = identity_of([temperatures, logarithms])
+   end subroutine set_table
 
    !> a_T and b_T at a temperature; both are exactly 1 at the reference temperature and without a
    !> law

@@ -70,7 +70,7 @@ module vcor_solver_features
       integer :: feature = 0
       !> Why
       character(len=152) :: message = ''
-      !> Names of the arguments that make it, as `error%about` has them
+      !> Names of the arguments that make it, as `error%about` has them; blank: those of the case
       character(len=48) :: about = ''
    end type refusal_t
 
@@ -127,7 +127,7 @@ module vcor_solver_features
       //"U = alpha(t) I, which a hereditary plate does not have; use method = 'ive', or " &
       //"'direct' with scheme = 'product'", 'waves scheme'), &
       refusal_t([paper, 0, 0], of_viscosity, "scheme = 'adams_bashforth' has no term for a " &
-      //"viscosity; use scheme = 'product' or method = 'ive'", 'scheme viscosity')]
+      //"viscosity; use scheme = 'product' or method = 'ive'")]
 
    !> A value of a key that is a method's own, and the feature that it replaces
    type :: own_rule_t

@@ -1,8 +1,9 @@
 !> Solve the points of a sweep on all ranks and their threads; a single impact is a sweep of one
 !> point
 !>
-!> A point is the case with some numbers replaced. The problem of the case follows these numbers, so
-!> no point reads, looks up or checks the whole case, or computes the rules of a solver again. A
+!> A point is the inputs of the case with some numbers replaced. The problem of the case is built
+!> again where they differ, so no point reads, looks up or checks the case, or computes the rules of
+!> a solver again. A
 !> point that is impossible or cannot be solved has a status instead of numbers and does not stop
 !> the others.
 !>
@@ -22,7 +23,9 @@ module vcor_sweep_points
    use vcor_case_catalogue, only : catalogue, wanted
    use vcor_case_cause, only : may_contribute
    use vcor_case_grid, only : grid_t, new_grid
+   use vcor_case_inputs, only : inputs_t, quantity_t
    use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_reader, only : quantity_at
    use vcor_case_reading, only : refuse_unread
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
@@ -52,6 +55,8 @@ module vcor_sweep_points
       type(interval_t), allocatable, private :: ranges(:)
       !> Message for a value out of range, shape (axes)
       type(error_t), allocatable, private :: objections(:)
+      !> The numbers of the inputs that vary, shape (axes)
+      type(quantity_t), allocatable, private :: quantities(:)
    contains
       procedure :: is_grid
    end type sweep_t
@@ -62,9 +67,9 @@ module vcor_sweep_points
       type(problem_t) :: problem
       !> Its trajectory
       type(trajectory_t) :: trajectory
-      !> The case with the numbers of the impact
-      type(case_t), private :: case
-      !> Whether case and problem have been copied from the sweep
+      !> The inputs with the numbers of the impact
+      type(inputs_t), private :: inputs
+      !> Whether inputs and problem have been copied from the sweep
       logical, private :: is_ready = .false.
    end type worker_t
 
@@ -158,7 +163,7 @@ contains
       if (allocated(error)) return
       self%case = case
       n = size(self%grid%axes)
-      allocate (self%ranges(n), self%objections(n))
+      allocate (self%ranges(n), self%objections(n), self%quantities(n))
       do i = 1, n
          row = case%row(self%grid%axes(i)%address)
          associate (axis => self%grid%axes(i), key => catalogue(row))
@@ -173,6 +178,9 @@ contains
          end associate
       end do
       call problem_of_case(self%problem, self%case, error)
+      do i = 1, n
+         self%quantities(i) = quantity_at(self%grid%axes(i)%address, self%problem%inputs)
+      end do
       shows_all = .false.
       if (present(all_materials)) shows_all = all_materials
       call refuse_unread(self%problem%reading, case, .not. allocated(error), shows_all, unread)
@@ -206,7 +214,7 @@ contains
       integer :: i, place(size(self%grid%axes))
 
       if (.not. worker%is_ready) then
-         worker%case = self%case
+         worker%inputs = self%problem%inputs
          worker%problem = self%problem
          worker%is_ready = .true.
       end if
@@ -214,12 +222,12 @@ contains
       do i = 1, size(place)
          value = self%grid%axes(i)%values(place(i))
          if (contains_number(self%ranges(i), value)) then
-            call worker%case%set(self%grid%axes(i)%address, value)
+            call worker%inputs%put(self%quantities(i), value)
          else if (.not. allocated(error)) then
             call raise(error, error_input, self%objections(i)%message)
          end if
       end do
-      if (.not. allocated(error)) call worker%problem%update(worker%case, error)
+      if (.not. allocated(error)) call worker%problem%build(worker%inputs, error)
       if (.not. allocated(error)) call worker%problem%solve(worker%trajectory, &
          outcome, error)
       if (.not. allocated(error)) return

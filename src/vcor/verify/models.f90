@@ -2,11 +2,17 @@
 module vcor_verify_models
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
+   use vcor_case_cause, only : explain
+   use vcor_case_inputs, only : inputs_t, of_plate, shape_punch
    use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_reader, only : read_inputs, waves_of
+   use vcor_impact_contact, only : pair_eq1, pair_series
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
+   use vcor_kinds, only : wp
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_solver, only : solve_impact
+   use vcor_words, only : contains_word, list_of_words, longest_name
    implicit none
    private
 
@@ -115,25 +121,31 @@ contains
       !> Whether the combination describes an impact
       logical, intent(out) :: valid
 
-      type(case_t) :: other
+      type(inputs_t) :: inputs
       type(problem_t) :: problem
       type(trajectory_t) :: trajectory
       type(error_t), allocatable :: error
 
-      other = case
-      call other%set(other%address('plate', 'waves'), trim(model%waves), given=.false.)
-      call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
-      call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
-      call other%set(other%address('solver', 'method'), 'auto', given=.false.)
-      call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
-      call other%unset(other%address('solver', 'continue_after_separation'))
-      if (model%is_half_space) then
-         call other%unset(other%address('plate', 'half_thickness'))
-         call other%unset(other%address('plate', 'thickness'))
+      call read_inputs(case, inputs, problem%reading, error)
+      if (.not. allocated(error)) then
+         if (inputs%material(of_plate)%model /= 'rigid') inputs%waves = waves_of(trim(model%waves))
+         inputs%waves_are_chosen = .false.
+         ! a flat punch does not recede
+         inputs%receding = model%law == 'receding' .and. inputs%shape /= shape_punch
+         if (problem%reading%has(case%address('contact', 'pair'))) &
+            inputs%pair = merge(pair_series, pair_eq1, model%pair == 'series')
+         inputs%settings%method = 'auto'
+         inputs%settings%scheme = 'product'
+         inputs%settings%ghost = .false.
+         if (model%is_half_space) inputs%half_thickness = 0.0_wp
+         ! an accuracy for internal variables may be out of reach of the coupled contact
+         if (model%waves == 'body') inputs%settings%accuracy = 0.0_wp
+         call problem%build(inputs, error)
+         if (allocated(error)) then
+            call forget_choices(error)
+            call explain(case, error)
+         end if
       end if
-      ! an accuracy for internal variables may be out of reach of the coupled contact
-      if (model%waves == 'body') call other%unset(other%address('solver', 'accuracy'))
-      call problem_of_case(problem, other, error)
       valid = .not. allocated(error)
       if (valid) call solve_impact(problem%solver, problem%impact, trajectory, model%outcome, error)
       if (allocated(error)) then
@@ -142,5 +154,25 @@ contains
          model%outcome = outcome_t()
       end if
    end subroutine solve_model
+
+   !> Remove from an error the keys that the combination replaces: the case has other values
+   pure subroutine forget_choices(error)
+      type(error_t), intent(inout) :: error
+
+      character(len=*), parameter :: replaced = &
+         'waves law pair method scheme continue_after_separation'
+      character(len=longest_name), allocatable :: names(:)
+      character(len=:), allocatable :: left
+      integer :: i
+
+      if (.not. allocated(error%about)) return
+      allocate (names, source=list_of_words(error%about))
+      left = ''
+      do i = 1, size(names)
+         if (.not. contains_word(replaced, trim(names(i)))) left = left//' '//trim(names(i))
+      end do
+      error%about = trim(adjustl(left))
+      if (left == '') deallocate (error%about)
+   end subroutine forget_choices
 
 end module vcor_verify_models

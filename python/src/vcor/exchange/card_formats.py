@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from .._library import InputError, UsageError, printable
 from .._text import option
-from ..case import _written
+from ..arguments import written
 from ..materials.units import GAS
 
 #: Sizes of the units of length, mass and time [m], [kg], [s]
@@ -147,7 +147,7 @@ class Card:
             "moduli": self.moduli, "times": self.times, **self.shift,
         }  # fmt: skip
         given = {key: _rounded(value) for key, value in keys.items() if value is not None}
-        rows = [f"   {key} = {_written(value, key)}" for key, value in given.items()]
+        rows = [f"   {key} = {written(value, key)}" for key, value in given.items()]
         # only lists of numbers are wrapped: a text is one line
         body = [line for row in rows for line in ([row] if "'" in row else
                 textwrap.wrap(row, 98, subsequent_indent=" " * 6))]  # fmt: skip
@@ -327,6 +327,9 @@ class Source:
             return names[0]
         if not names:
             self.fail(0, "found no viscoelastic material")
+        if self.material not in names and str(self.material).strip('"') in names:
+            # as the deck has it
+            return str(self.material).strip('"')
         if self.material not in names:
             what = f"material '{self.material}'" if self.material else f"{len(names)} materials"
             raise UsageError(f"{self.path}: found {what}, expected {option('material')} with one "
@@ -461,8 +464,10 @@ def _read_abaqus(source: Source) -> Card:
             head += lines.pop(0)[1].strip()
         word, *pairs = head.split(",")
         options = dict(re.sub(r"\s", "", pair).upper().partition("=")[::2] for pair in pairs)
-        title = re.search(r'(?i)\bname\s*=\s*("[^"]*"|[^,]*)', head)
+        title = re.search(r'(?i)\bname\s*=\s*("[^"]*"|[^,]*)\s*([^,]*)', head)
         name = title[1].strip() if title else ""
+        if title and title[2]:
+            source.fail(i, f"found '{title[2]}' after the name {name}, expected a comma")
         name = name[1:-1] if name.startswith('"') else name
         blocks.append((word.strip().upper(), i, options, lines, name))
     starts = [k for k, block in enumerate(blocks) if block[0] == "MATERIAL"] + [len(blocks)]
@@ -483,19 +488,32 @@ def _read_abaqus(source: Source) -> Card:
                         f"expected *{keyword} with lines of {counts[0]} numbers")  # fmt: skip
         return table
 
-    kind = "HYPERELASTIC" if "ELASTIC" not in found and "HYPERELASTIC" in found else "ELASTIC"
-    constants = rows(kind, *((1, 2, 3) if kind == "HYPERELASTIC" else (2, 3)))
-    terms = rows("VISCOELASTIC", 3, 4)
-    _, line, options, *_ = found[kind]
-    start, ratio = _abaqus_constants(source, kind, line, options, constants)
+    kinds = [one for one in found if one in ("ELASTIC", "HYPERELASTIC", "HYPERFOAM")]
+    if "ELASTIC" in kinds:
+        _, line, options, *_ = found["ELASTIC"]
+        if not (given := options.get("TYPE", "ISOTROPIC")).startswith("ISO"):
+            source.fail(line, f"found *ELASTIC, TYPE={given}, expected ISOTROPIC")
+        constants = rows("ELASTIC", 2, 3)
+        if len(constants) > 1:
+            source.fail(line, f"found *ELASTIC at {len(constants)} temperatures, expected one")
+        ratio = source.ratio(line, constants[0][1])
+        start = constants[0][0] / (2 * (1 + ratio))
+    elif "HYPERELASTIC" in kinds:
+        _, line, options, lines, _ = found["HYPERELASTIC"]
+        start, ratio = _hyperelastic(source, line, options, lines)
+    else:
+        line = found[kinds[0]][1] if kinds else parts[name][0][1]
+        source.fail(line, f"found {'*HYPERFOAM' if kinds else 'no elastic constants'}, expected "
+                          "*ELASTIC or *HYPERELASTIC")  # fmt: skip
     moduli = options.get("MODULI", "LONGTERM")
     if moduli not in ("LONGTERM", "INSTANTANEOUS"):
         source.fail(line, f"found MODULI={moduli}, expected LONG TERM or INSTANTANEOUS")
     _, line, options, *_ = found["VISCOELASTIC"]
-    if options.get("TIME") != "PRONY":
-        given = ", ".join("=".join(filter(None, pair)) for pair in options.items())
-        source.fail(line, f"found *VISCOELASTIC, {given or 'nothing'}; expected TIME=PRONY with "
-                          "ratios and times")  # fmt: skip
+    given = ", ".join("=".join(filter(None, pair)) for pair in options.items())
+    if options.get("TIME") != "PRONY" or options.get("TYPE", "ISOTROPIC") != "ISOTROPIC":
+        source.fail(line, f"found *VISCOELASTIC, {given or 'nothing'}; expected TIME=PRONY of a "
+                          "solid, with ratios and times")  # fmt: skip
+    terms = rows("VISCOELASTIC", 3, 4)
     part = 1 - math.fsum(row[0] for row in terms)
     if moduli == "LONGTERM":
         if not 0 < part < 1:
@@ -523,40 +541,70 @@ def _read_abaqus(source: Source) -> Card:
     )  # fmt: skip
 
 
-def _abaqus_constants(
-    source: Source, kind: str, line: int, options: Mapping[str, str], rows: list[list[float]]
-) -> tuple[float, float]:
-    """Shear modulus and Poisson's ratio of *ELASTIC, or of *HYPERELASTIC, NEO HOOKE."""
-    if len(rows) > 1:
-        source.fail(line, f"found *{kind} at {len(rows)} temperatures, expected one")
-    if kind == "ELASTIC":
-        if not (given := options.get("TYPE", "ISOTROPIC")).startswith("ISO"):
-            source.fail(line, f"found *ELASTIC, TYPE={given}, expected ISOTROPIC")
-        modulus, ratio = rows[0][:2]
-        source.ratio(line, ratio)
-        return modulus / (2 * (1 + ratio)), ratio
-    form = ", ".join(one for one in options if one not in ("MODULI", "N"))
-    neo = form == "NEOHOOKE" or form == "REDUCEDPOLYNOMIAL" and options.get("N", "1") == "1"
-    if not neo:
-        source.fail(line, f"found *HYPERELASTIC, {form or 'POLYNOMIAL'}, expected NEO HOOKE with "
-                          "C10 and D1, or *ELASTIC")  # fmt: skip
-    c10, d1 = [*rows[0], 0.0][:2]
-    return _neo_hooke(source, line, {"C10": c10, "D1": d1}, 2 * c10)
+#: Laws of *HYPERELASTIC by constants: kind of their polynomial, and its order if that is not N
+_HYPERELASTIC = {
+    "NEOHOOKE": ("reduced", 1), "YEOH": ("reduced", 3), "REDUCEDPOLYNOMIAL": ("reduced", 0),
+    "MOONEY-RIVLIN": ("whole", 1), "POLYNOMIAL": ("whole", 0), "OGDEN": ("ogden", 0),
+}  # fmt: skip
+#: Numbers in a line of Abaqus
+_IN_LINE = 8
 
 
-def _neo_hooke(
-    source: Source, line: int, constants: Mapping[str, float], shear: float
+def _hyperelastic(
+    source: Source, line: int, options: Mapping[str, str], lines: list[Line]
 ) -> tuple[float, float]:
-    """Shear modulus and Poisson's ratio of a neo-Hookean solid, by two constants of a card.
+    """Shear modulus and Poisson's ratio of *HYPERELASTIC at small strains.
+
+    A polynomial in (I1 - 3) and (I2 - 3) has G = 2 (C10 + C01), the strain energy of Ogden
+    sum of 2 mu_i/alpha_i^2 (...) has G = sum of mu_i; D1 is that of (J - 1)^2/D1: K = 2/D1.
+    """
+    form = ", ".join(one for one in options if one not in ("MODULI", "N")) or "POLYNOMIAL"
+    if form not in _HYPERELASTIC:
+        source.fail(line, f"found *HYPERELASTIC, {form}, expected constants of NEO HOOKE, "
+                          "MOONEY-RIVLIN, YEOH, POLYNOMIAL, REDUCED POLYNOMIAL or OGDEN, or "
+                          "*ELASTIC")  # fmt: skip
+    kind, order = _HYPERELASTIC[form]
+    n = order or source.number(line, options.get("N", "1"))
+    if n not in range(1, 7):
+        source.fail(line, f"found *HYPERELASTIC, N={n:g}, expected a whole number from 1 to 6")
+    n = int(n)
+    first = {"reduced": n, "whole": n * (n + 3) // 2, "ogden": 2 * n}[kind]
+    cells: list[float] = []
+    table = [(i, text.rstrip(", ").split(",")) for i, text in lines if text.strip(", ")]
+    for k, (i, row) in enumerate(table):
+        # each line but the last one has eight numbers, 0 where there is none
+        cells += [0.0] * (_IN_LINE * k - len(cells)) + [source.number(i, word) for word in row]
+    if len(table) > math.ceil((first + n) / _IN_LINE):
+        source.fail(line, f"found *HYPERELASTIC, {form} with {len(table)} lines, expected the "
+                          f"{first + n} constants at one temperature")  # fmt: skip
+    if not first <= len(cells) <= first + n + 1:
+        source.fail(line, f"found {len(cells)} numbers of *HYPERELASTIC, {form}, expected "
+                          f"{first + n}: {first} and {n} of the volume")  # fmt: skip
+    c10, c01 = [*cells, 0.0][:2]
+    says, value, part = {
+        "reduced": ("C10", c10, 2),
+        "whole": ("C10 + C01", c10 + c01, 2),
+        "ogden": ("the sum of mu", math.fsum(cells[:first:2]), 1),
+    }[kind]
+    if form != "NEOHOOKE":
+        source.remarks.append(f"*HYPERELASTIC, {form} is read at small strains: G is {part} times "
+                              f"{says}")  # fmt: skip
+    return _volume(source, line, (says, value), ("D1", [*cells[first:], 0.0][0]), part * value)
+
+
+def _volume(
+    source: Source, line: int, first: tuple[str, float], second: tuple[str, float], shear: float
+) -> tuple[float, float]:
+    """Shear modulus and Poisson's ratio of a hyperelastic solid, by two of its constants.
 
     The second one, D, is that of (J - 1)^2/D: the bulk modulus is 2/D.
     """
-    (first, one), (second, d) = constants.items()
+    (what, one), (which, d) = first, second
     if not (one > 0 and d >= 0):
-        source.fail(line, f"found {first} = {one:g} and {second} = {d:g}, expected {first} > 0 and "
-                          f"{second} >= 0")  # fmt: skip
+        source.fail(line, f"found {what} = {one:g} and {which} = {d:g}, expected {what} > 0 and "
+                          f"{which} >= 0")  # fmt: skip
     if d == 0:
-        source.remarks.append(f"{second} = 0: the material is incompressible, Poisson's ratio 0.5")
+        source.remarks.append(f"{which} = 0: the material is incompressible, Poisson's ratio 0.5")
     return shear, _ratio(2 / d, shear) if d else 0.5
 
 
@@ -637,17 +685,13 @@ def _read_ansys(source: Source) -> Card:
         return source.number(*lines[0], sums=True) if lines else None
 
     def elastic() -> tuple[float, float]:
-        """Shear modulus at once and Poisson's ratio, by EX or by a neo-Hookean solid."""
-        for (number, kind), (line, _, texts) in tables.items():
+        """Shear modulus at once and Poisson's ratio, by EX or by a hyperelastic solid."""
+        for (number, kind), (line, count, texts) in tables.items():
             if number != name or not kind.startswith("HYPE"):
                 continue
-            if (solid := kind.partition(" ")[2]) not in ("NEO", "NEOHOOKEAN"):
-                source.fail(line, f"found TB,HYPER of kind {solid or 'none'}, expected NEO with "
-                                  "mu and d, or MP,EX")  # fmt: skip
             if constant("EX") is not None:
                 source.fail(line, "found TB,HYPER and MP,EX, expected one of them")
-            mu, d = [source.number(line, text) for text in [*texts, "0", "0"][:2]]
-            return _neo_hooke(source, line, {"mu": mu, "d": d}, mu)
+            return _hyper_of_ansys(source, line, kind.partition(" ")[2], count, texts)
         modulus, ratio = source.elastic(constant("EX"), constant("PRXY", "NUXY"))
         return modulus / (2 * (1 + ratio)), ratio
 
@@ -673,6 +717,44 @@ def _read_ansys(source: Source) -> Card:
         tables[name, "SHEA"][0], [(start * part, time) for part, time in shear], rest,
         terms("BULK"), ratio, density=constant("DENS"), shift=shift,
     )  # fmt: skip
+
+
+def _hyper_of_ansys(
+    source: Source, line: int, kind: str, count: float, texts: list[str]
+) -> tuple[float, float]:
+    """Shear modulus and Poisson's ratio of TB,HYPER at small strains.
+
+    Neo-Hooke has G = mu, polynomials in (I1 - 3) and (I2 - 3) have G = 2 (C10 + C01), the strain
+    energy of Ogden, sum of mu_i/alpha_i (...), has G = sum of mu_i alpha_i/2; d of (J - 1)^2/d
+    follows the other constants: K = 2/d.
+    """
+    values = [source.number(line, text) for text in texts]
+    n = int(count or 1)
+    found = kind[:4]
+    # how many constants stand before those of the volume
+    before = {"NEO": 1, "NEOH": 1, "MOON": int(count or 2), "YEOH": n, "OGDE": 2 * n,
+              "POLY": n * (n + 3) // 2}  # fmt: skip
+    if found not in before:
+        source.fail(line, f"found TB,HYPER of kind {kind or 'none'}, expected NEO, MOONEY, YEOH, "
+                          "OGDEN or POLY with constants, or MP,EX")  # fmt: skip
+    first, volumes = before[found], n if found in ("YEOH", "OGDE", "POLY") else 1
+    if not first <= len(values) <= first + volumes:
+        source.fail(line, f"found {len(values)} constants of TB,HYPER,,,,{kind}, expected "
+                          f"{first + volumes}: {first} and {volumes} of the volume")  # fmt: skip
+    one, other = [*values, 0.0][:2]
+    if found in ("NEO", "NEOH"):
+        says, value, part = "mu", one, 1.0
+    elif found == "YEOH":
+        says, value, part = "C10", one, 2.0
+    elif found == "OGDE":
+        pairs = zip(values[:first:2], values[1:first:2], strict=True)
+        says, value, part = "the sum of mu alpha", math.fsum(a * b for a, b in pairs), 0.5
+    else:
+        says, value, part = "C10 + C01", one + other, 2.0
+    if part != 1:
+        source.remarks.append(f"TB,HYPER,,,,{kind} is read at small strains: G is {part:g} times "
+                              f"{says}")  # fmt: skip
+    return _volume(source, line, (says, value), ("d", [*values[first:], 0.0][0]), part * value)
 
 
 # -------------------------------------------------------------------------------------- LS-DYNA
@@ -713,7 +795,7 @@ def _write_one_term(card: Card) -> list[str]:
 
 
 def _read_lsdyna(source: Source) -> Card:
-    cards, long = [], False
+    cards, others, long = [], [], False
     for i, head, lines in source.blocks("*", ("$",)):
         word = (head.upper().split() or [""])[0]
         if word == "KEYWORD":
@@ -723,7 +805,13 @@ def _read_lsdyna(source: Source) -> Card:
             width = 20 if word.endswith("+") or long and not word.endswith("-") else 10
             title = lines.pop(0)[1].strip() if "_TITLE" in word and lines else source.name
             cards.append((title, i, _DYNA[kind], lines, width))
+        elif word.startswith("MAT_"):
+            others.append((i, word))
     source.once([(title, i) for title, i, *_ in cards])
+    if not cards and others:
+        i, word = others[0]
+        source.fail(i, f"found *{word}, expected *MAT_GENERAL_VISCOELASTIC (076) or "
+                       "*MAT_VISCOELASTIC (006)")  # fmt: skip
     found = {title: (i, count, lines, width) for title, i, count, lines, width in cards}
     name = source.choose(list(found))
     line, count, lines, width = found[name]
@@ -733,8 +821,9 @@ def _read_lsdyna(source: Source) -> Card:
     if count == 6:
         return _one_term(source, lines[0][0], density, bulk, *rest, name=name)
     if any(source.columns(lines[1], *[width] * 8)[::4]):
-        source.fail(lines[1][0], "found a load curve, expected the second line of the card, which "
-                                 "may be blank, and then rows of moduli and rates")  # fmt: skip
+        source.fail(lines[1][0], "found a load curve (LCID, LCIDK) in the second line of the card, "
+                                 "which may be blank, expected rows of moduli and rates after "
+                                 "it")  # fmt: skip
     rows = [(i, source.columns((i, text), *[width] * 4)) for i, text in lines[2:]]
     if flawed := [i for i, row in rows if min(row) < 0]:
         source.fail(flawed[0], "expected moduli and rates >= 0")

@@ -12,11 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from .. import _command, _text
+from .._coverage import unwarned
 from .._library import InputError, NumericalError, UsageError, numbers, whole, within
 from .._text import option
-from ..case import MOST_POINTS, Case, number
+from ..arguments import MOST_POINTS
+from ..case import Case, number
 from ..sources import IMPACT, material_case
 from .card_formats import FORMATS, UNITS, Card, Source, Terms, head_of
+from .codes import TARGETS
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)
@@ -127,7 +130,9 @@ def card(
                 impact, factor = case.copy(), 1.0
                 impact["impact.temperature"] = of("reference_temperature")
             try:
-                contact = float(impact.solve(quantities=["contact_time"])["contact_time"]) / factor
+                with unwarned():
+                    solved = impact.solve(quantities=["contact_time"])
+                contact = float(solved["contact_time"]) / factor
             except NumericalError as error:
                 raise UsageError(f"{error}; expected {option('band')} for the card") from None
             band = _BAND[0] * contact, _BAND[1] * contact
@@ -285,6 +290,7 @@ def _parser() -> _command.Parser:
         "such a card and write a &material group. Models that are not sums of exponentials become "
         "one, with its error.",
     )
+    parser.elsewhere = {one: f"; vcor export writes for {one}" for one in TARGETS}
     add = parser.add_argument
     add("file", metavar="FILE", help="case, file of &material groups, or a file that holds a card")
     add("--material", metavar="NAME", help="name of the material; needed if there are several")

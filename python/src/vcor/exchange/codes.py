@@ -24,12 +24,14 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from .. import _library, _text
+from .._coverage import unwarned
 from .._library import (
     Floats,
     InputError,
     NoResultWarning,
     NumericalError,
     UsageError,
+    ValidityWarning,
     numbers,
     whole,
 )
@@ -242,7 +244,7 @@ def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.
     """Results at the velocities and between them, every second one."""
     velocity = np.empty(2 * len(given) - 1)
     velocity[::2], velocity[1::2] = given, np.sqrt(given[1:] * given[:-1])
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), unwarned(ValidityWarning):
         warnings.simplefilter("ignore", NoResultWarning)
         found = case.points({"impact.velocity": velocity}, (*COLUMNS, "status"), threads=threads)
     lost = ~np.isfinite(found[quantity].values)
@@ -294,7 +296,7 @@ def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.
     if case["contact.mechanics"] == "paper":
         exact, middle = case.copy(), float(velocity[len(velocity) // 2])
         # a case that gives law, pair and waves leaves mechanics nothing to say
-        with contextlib.suppress(NumericalError, InputError):
+        with contextlib.suppress(NumericalError, InputError), unwarned():
             exact["contact.mechanics"] = "exact"
             there = float(exact.solve({"impact.velocity": middle}, [quantity])[quantity])
             here = float(found[quantity][len(velocity) // 2])

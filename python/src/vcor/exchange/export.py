@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 
 from .. import _command
 from .._library import UsageError
-from ..case import Case, as_case, listed, read_cases
+from ..arguments import listed
+from ..case import Case, as_case, read_cases
 from .codes import MEANING, TARGETS, Export, export_pair
 from .mixture import Mixture, export_mixture
 
@@ -81,7 +82,7 @@ def _parser() -> _command.Parser:
     add = parser.add_argument
     add("case", metavar="CASE.nml", nargs="+",
         help="case of a pair, or of all pairs of a mixture, and files of materials")  # fmt: skip
-    add("--for", metavar="PROGRAM", dest="target", required=True,
+    add("--for", metavar="PROGRAM", dest="target", required=True, type=str.lower,
         help=f"one of {', '.join(TARGETS)}")  # fmt: skip
     add("--velocities", metavar="A:B:N", required=True,
         help="N velocities from A to B [m/s], in equal ratios")  # fmt: skip

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import qr
 
-from .._library import Floats
+from .._library import Floats, UnitWarning
 from .._text import option
 from ..case import Case
 from .limits import LEAST
@@ -92,7 +93,10 @@ def next_measurement(problem: Problem, x: Floats, covariance: Floats) -> str:
     grid = np.geomspace(speeds.min() / NEXT_REACH, speeds.max() * NEXT_REACH, 13)
     trial = probe(case, grid)
     measured = (grid >= speeds.min()) & (grid <= speeds.max())
-    feasible = measured | [kind != "outside" for kind, _ in trial.validity(case)]
+    with warnings.catch_warnings():
+        # no one has given these velocities
+        warnings.simplefilter("ignore", UnitWarning)
+        feasible = measured | [kind != "outside" for kind, _ in trial.validity(case)]
     slopes = problem.elasticities(x, trial, NEXT) / NEXT_ERROR
     now = np.diag(covariance)
     best, where = 1.0, None

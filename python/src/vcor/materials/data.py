@@ -11,12 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .._library import InputError, UsageError
+from .. import _library
+from .._library import Floats, InputError, UsageError
 from .._text import option
 from .grid import read_grid
+from .labels import unified
 from .names import read_head
-from .reader import Reader, refuse_all_but_moduli
+from .reader import SAME_TEMPERATURE, Reader, refuse_all_but_moduli
+from .select import Where
 from .tables import Choice
 from .units import ZERO_C
 
@@ -27,8 +31,10 @@ if TYPE_CHECKING:
 Columns = Mapping[str, str | int] | Sequence[str] | None
 Units = Mapping[str, str] | Sequence[str] | str | None
 
-#: Difference of temperatures that begins another curve [K]
-SAME_TEMPERATURE = 1.0
+#: Logarithm of a factor by which replicates differ at most: specimens of a material scatter by some
+#: percent, while moduli at temperatures between which it relaxes differ by more than this
+REPLICATES = 0.2
+MODULI = {"relaxation_modulus", "storage_modulus", "loss_modulus"}
 #: Relative difference of the frequencies of a sweep of temperatures at one frequency
 SAME_FREQUENCY = 0.01
 
@@ -38,6 +44,7 @@ def read_data(
     columns: Columns | Choice = None,
     units: Units = None,
     *,
+    where: Where = None,
     unit_of: Callable[[str], str] | None = None,
     whole: bool = True,
 ) -> pd.DataFrame:
@@ -53,6 +60,10 @@ def read_data(
     units
         Units of columns that have none in the file: each for the columns of its quantity, or by
         the names of columns.
+    where
+        Which rows are taken: `{"ball": "golf"}` those with a word or number in a column, or
+        conditions `"ball!=golf"`, `"Run=1"`, `"f=0.1:10"` (a range, in the unit of the file);
+        `sheet`, `temperature` (`"temperature!=-20C"`) and `line` are columns too.
     unit_of
         SI unit of the value at an address, for columns with names such as `rubber.beta`.
     whole
@@ -68,7 +79,7 @@ def read_data(
     """
     import pandas as pd
 
-    choice = columns if isinstance(columns, Choice) else Choice(columns, units)
+    choice = columns if isinstance(columns, Choice) else Choice(columns, units, where=where)
     grid = read_grid(path)
     reader = Reader(grid, choice, unit_of, whole)
     parts, kind = reader.parts()
@@ -87,19 +98,23 @@ def read_data(
         "digits": reader.digits,
     }
     frame.attrs["taken"] = reader.taken(frame)
+    if whole and kind in ("dynamic", "relaxation"):
+        frame.attrs["taken"] += _replicates(frame)
     return frame
 
 
 def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
-    """Moduli at one temperature each, by rising frequency or time.
+    """Moduli at one temperature each, by frequency or time that rise, or are equal.
 
-    `attrs["temperature"]` is the mean temperature [K], nan where the file has none.
+    Several runs at one temperature that agree are one curve, whose points have the number of their
+    run as `set`: specimens, sweeps up and down, readings at one frequency. `attrs["temperature"]`
+    is the mean temperature [K], nan where the file has none, `attrs["runs"]` the number of runs.
     """
     across = "frequency" if data.attrs["kind"] == "dynamic" else "time"
     if any(remark.strip().startswith("&material shift ") for remark in data.attrs["remarks"]):
         # a master curve is one, whose points belong to the sets that it was made of
         one = data.sort_values(across)
-        one.attrs = {**data.attrs, "temperature": math.nan}
+        one.attrs = {**data.attrs, "temperature": math.nan, "runs": 1}
         return [one]
     kelvin = data["temperature"].to_numpy() if "temperature" in data else np.full(len(data), np.nan)
     group = data["set"].to_numpy() if "set" in data else np.zeros(len(data))
@@ -109,22 +124,116 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
         jumps |= np.isfinite(kelvin[1:])
     found = []
     for part in np.split(np.arange(len(data)), np.flatnonzero(jumps) + 1):
-        one = data.iloc[part]
-        steps = np.diff(one[across])
-        if not ((steps > 0).all() or (steps < 0).all()):
+        one = data.iloc[part].copy()
+        run = _runs(one[across].to_numpy())
+        one.attrs = {**data.attrs, "runs": int(run[-1]) + 1}
+        one["set"] = run
+        if run[-1] and not _differ(one, across) < REPLICATES:
+            steps = np.diff(one[across])
             rises = steps[steps != 0].size and steps[steps != 0][0] > 0
-            at = int(np.argmax(steps <= 0 if rises else steps >= 0)) + 1
+            at = int(np.argmax(run > 0))
             raise InputError(
                 f"{data.attrs['path']}:{one.index[at]}: found a {across} of "
                 f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
                 f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
-                "or a column of temperatures or sets that separates the curves"
+                "or a column of temperatures that separates the curves"
+                f"; replicates differ by less than {100 * math.expm1(REPLICATES):.0f} %"
             )
-        one = one.sort_values(across)
         temperature = one["temperature"].mean() if "temperature" in one else math.nan
-        one.attrs = {**data.attrs, "temperature": float(temperature)}
+        one.attrs["temperature"] = float(temperature)
         found.append(one)
+    if len(found) > 1 and all(len(one) == 1 for one in found):
+        # a temperature sweep
+        return found
+    return [one.sort_values(across, kind="stable") for one in together(found)]
+
+
+def together(read: Sequence[pd.DataFrame]) -> list[pd.DataFrame]:
+    """Curves, those of one temperature that agree as one, as replicates of a measurement are.
+
+    Each has points in any order; `attrs["runs"]` counts how many were put together.
+    """
+    import pandas as pd
+
+    found: list[pd.DataFrame] = []
+    #: Those in each kelvin
+    near: dict[int, list[int]] = {}
+    for one in read:
+        across = "frequency" if one.attrs["kind"] == "dynamic" else "time"
+        kelvin = one.attrs["temperature"]
+        place = -9 if math.isnan(kelvin) else int(kelvin)
+        for i in [i for k in (-1, 0, 1) for i in near.get(place + k, [])]:
+            other = found[i]
+            at = [each.attrs["temperature"] for each in (one, other)]
+            same = abs(at[0] - at[1]) < SAME_TEMPERATURE or all(map(math.isnan, at))
+            if not same or one.attrs["kind"] != other.attrs["kind"]:
+                continue
+            both = pd.concat([other, one.assign(set=one["set"] + other["set"].max() + 1)])
+            both = both.sort_values(across, kind="stable")
+            # the same numbers once more are a copy, which would lessen the errors for nothing
+            columns = [across, *(MODULI & set(both))]
+            copy = len(one) == len(other) and (one[columns].values == other[columns].values).all()
+            if copy or not _differ(both, across) < REPLICATES:
+                continue
+            runs = [each.attrs["runs"] for each in (one, other)]
+            mean = (at[0] * len(one) + at[1] * len(other)) / len(both)
+            both.attrs = {**other.attrs, "runs": sum(runs), "temperature": mean}
+            found[i] = both
+            break
+        else:
+            near.setdefault(place, []).append(len(found))
+            found.append(one)
     return found
+
+
+def _runs(x: Floats) -> NDArray[np.int_]:
+    """Number of the run, rising or falling throughout, that each point belongs to."""
+    run = np.zeros(len(x), dtype=int)
+    way = 0.0
+    for i, step in enumerate(np.sign(np.diff(x)), 1):
+        ends = step == 0 or step == -way
+        run[i] = run[i - 1] + ends
+        way = 0.0 if ends else step
+    return run
+
+
+def _differ(data: pd.DataFrame, across: str) -> float:
+    """Logarithm of the factor by which points of one run differ from others between them.
+
+    The median over all points next to one of another run, of the modulus that differs more; each is
+    compared with the line between its neighbours. Infinite if no point lies between others.
+    """
+    data = data.sort_values(across, kind="stable")
+    x, run = np.log(data[across].to_numpy()), data["set"].to_numpy()
+    other = np.diff(run) != 0
+    mixed = (other[1:] | other[:-1]).nonzero()[0] + 1
+    if not mixed.size:
+        return math.inf
+    span = x[mixed + 1] - x[mixed - 1]
+    part = np.where(span > 0, (x[mixed] - x[mixed - 1]) / np.where(span > 0, span, 1.0), 0.5)
+    found = 0.0
+    for name in MODULI & set(data):
+        y = np.log(data[name].to_numpy())
+        line = (1 - part) * y[mixed - 1] + part * y[mixed + 1]
+        found = max(found, float(np.median(np.abs(y[mixed] - line))))
+    return found
+
+
+def _replicates(data: pd.DataFrame) -> str:
+    """What is said of replicates, empty if there are none."""
+    try:
+        found = curves(data)
+    except InputError:
+        return ""
+    across = "frequency" if data.attrs["kind"] == "dynamic" else "time"
+    several = [one for one in found if one.attrs.get("runs", 1) > 1]
+    if not several:
+        return ""
+    counts = [one.attrs["runs"] for one in several]
+    most = 100 * math.expm1(max(_differ(one, across) for one in several))
+    runs = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
+    each = f" at each of {len(several)} temperatures" if len(several) > 1 else ""
+    return f"; {runs} runs{each} are one curve, as they differ by {most:.2g} % only"
 
 
 def read_moduli(
@@ -194,7 +303,9 @@ def _at(name: str) -> tuple[str, str]:
 
 def kelvin(text: str, what: str) -> float:
     """A temperature such as -20C, 253K or 253 in kelvin."""
-    found = re.fullmatch(r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", text.strip())
+    found = re.fullmatch(
+        r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", unified(text).replace("−", "-").strip()
+    )
     if not found:
         raise UsageError(f"{what}: found '{text}', expected a temperature such as -20C or 253K")
     return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
@@ -207,7 +318,7 @@ def is_temperature(name: str) -> bool:
 
 def plain_name(text: str) -> str:
     """Name of a quantity as vcor has it, whatever it is called."""
-    return read_head(text).key or text
+    return text if text in _library.columns(0) else read_head(text).key or text
 
 
 def add_data_options(parser: argparse.ArgumentParser) -> None:
@@ -225,6 +336,14 @@ def add_data_options(parser: argparse.ArgumentParser) -> None:
         metavar="UNIT,UNIT",
         default=None,
         help="units of columns that have none in the file",
+    )
+    parser.add_argument(
+        "--where",
+        action="append",
+        metavar="COLUMN=VALUE",
+        default=[],
+        help="rows that are taken: those with a word, a number or one of FROM:TO in a column; "
+        "sheet, line and temperature (such as -20C) are columns too; COLUMN!=VALUE for all others",
     )
 
 

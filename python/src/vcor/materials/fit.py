@@ -6,6 +6,7 @@ import math
 import os
 import re
 import textwrap
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,14 +17,17 @@ from numpy.typing import ArrayLike
 
 from .._library import Error, Floats, InputError, UsageError, numbers, printable, whole, within
 from .._text import command, document, near, option
-from ..case import Case, Material, _written, scalars
+from ..arguments import scalars, written
+from ..case import Case
+from ..material import Material
 from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
 from .master import curve_of, of_curves
+from .names import read_head
 from .prony import MOST_TERMS, fit_series
 from .reader import refuse_all_but_moduli
 from .samples import Samples, one_thread
-from .units import ZERO_C
+from .units import ZERO_C, size
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,6 +49,11 @@ SHIFT_NOTE = (
     "the standard errors leave out those of the shift factors: identify fits moduli and shift at "
     "once"
 )
+#: Most points of a curve that are fitted one by one
+MOST_POINTS = 2000
+#: Arrays of a fit, in their order
+_RELAXATION = ("time", "relaxation_modulus")
+_DYNAMIC = ("frequency", "storage_modulus", "loss_modulus")
 #: Case that a material is put into to be evaluated
 _CASE = """&impact velocity = 1.0 /
 &sphere radius = 1.0, mass = 1.0, material = {0} /
@@ -149,7 +158,8 @@ def fit(
     data
         A data file, or its columns as `vcor.read_data` gives them; or arrays: times [s] and
         relaxation moduli [Pa], or angular frequencies [rad/s], storage and loss moduli [Pa], each
-        of shape (n,).
+        of shape (n,). Arrays by name may have units: `{"f [Hz]": ..., "E' [MPa]": ...,
+        "E'' [MPa]": ...}`; without them `time`, `frequency` and moduli are in s, rad/s and Pa.
     model
         Model of the relaxation modulus.
     terms
@@ -182,7 +192,7 @@ def fit(
         samples, source, _ = samples_of(data, poisson_ratio)
         name = name or Path(source).stem
     else:
-        samples = _samples_of_arrays(data)
+        samples = _samples_of_arrays(_named_arrays(data, poisson_ratio))
     return fit_samples(
         samples, source, model=model, terms=terms, fix=fix, poisson_ratio=poisson_ratio,
         density=density, name=name or "material",
@@ -209,7 +219,30 @@ def samples_of(
     at = parts[0]["frequency" if kind == "dynamic" else "time"].to_numpy(dtype=float)
     moduli = parts[0][names].to_numpy(dtype=float).T
     own = parts[0]["set"].to_numpy(dtype=int) if "set" in parts[0] else None
+    if len(at) > MOST_POINTS:
+        n = len(at)
+        at, moduli = _averaged(at, moduli)
+        across = "frequency" if kind == "dynamic" else "time"
+        note = (
+            f"  note: {n} points are more than {MOST_POINTS}: the fit is to {len(at)} geometric "
+            f"means of those next to each other in log {across}"
+        )
+        return Samples(at, moduli, keys), source, [note]
     return Samples(at, np.ascontiguousarray(moduli), keys, own), source, []
+
+
+def _averaged(at: Floats, moduli: Floats) -> tuple[Floats, Floats]:
+    """Geometric means of points in parts of equal ratio, of which there are MOST_POINTS/2.
+
+    Of twelve decades a part w = 0.028 of the logarithm; a mean is off by w^2/24 = 3e-5 times the
+    curvature of ln E against ln t.
+    """
+    logs = np.log(np.vstack([at, moduli]))
+    part = (logs[0] - logs[0].min()) * (MOST_POINTS // 2) / max(float(np.ptp(logs[0])), 1e-300)
+    _, part = np.unique(np.floor(part), return_inverse=True)
+    counts = np.bincount(part)
+    means = np.exp([np.bincount(part, row) / counts for row in logs])
+    return means[0], np.ascontiguousarray(means[1:])
 
 
 def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:
@@ -233,8 +266,40 @@ def _shifted(parts: Sequence[pd.DataFrame], source: str) -> tuple[Samples, str]:
     return Samples(at[order], moduli[:, order], tuple(found.lines("")), own[order]), note
 
 
+def _named_arrays(data: Any, poisson_ratio: float | None) -> Any:
+    """Arrays by their names in the order of `fit`, in rad/s, s and Pa; other data as they are."""
+    if not isinstance(data, Mapping):
+        return data
+    found: dict[str, Floats] = {}
+    for key, column in data.items():
+        head = read_head(str(key))
+        scale = size(head.unit, head.si) if head.unit else (1.0, 0.0)
+        if head.key not in (*_DYNAMIC, *_RELAXATION) or head.flaw or head.base or not scale:
+            raise InputError(
+                f"data: found '{key!s:.60}', expected {', '.join(_RELAXATION)}, or "
+                f"{', '.join(_DYNAMIC)}, with a unit in brackets if it is not the SI unit"
+            )
+        if head.key in found:
+            raise InputError(f"data: found two arrays of the {head.key.replace('_', ' ')}")
+        if head.name == "frequency" and not (head.unit or head.angular):
+            warnings.warn(f"data: '{key}' is taken in rad/s; 'frequency [Hz]' is one in Hz",
+                          stacklevel=3)  # fmt: skip
+        factor = scale[0]
+        if head.shear:
+            if poisson_ratio is None:
+                raise UsageError(f"data: found shear moduli, '{key}', expected poisson_ratio, by "
+                                 "which they become tensile ones")  # fmt: skip
+            factor *= 2 * (1 + within(poisson_ratio, "poisson_ratio", -1, INCOMPRESSIBLE))
+        found[head.key] = factor * numbers(column, str(key))
+    wanted = _DYNAMIC if "frequency" in found else _RELAXATION
+    if set(found) != set(wanted):
+        raise InputError(f"data: found {', '.join(found) or 'nothing'}, expected "
+                         f"{', '.join(wanted)}")  # fmt: skip
+    return [found[name] for name in wanted]
+
+
 def _samples_of_arrays(data: Any) -> Samples:
-    parts = list(data.values() if hasattr(data, "values") else data) if np.iterable(data) else []
+    parts = list(data) if np.iterable(data) else []
     columns = [numbers(part, "data", np.inf, "numbers").ravel() for part in parts]
     rows = np.array(columns) if len({len(column) for column in columns}) == 1 else np.empty((0, 0))
     if len(rows) not in (2, 3) or not ((rows >= 1e-30) & (rows <= 1e30)).all():
@@ -383,7 +448,7 @@ def group_of(
         keys[one.name] = [*keys.get(one.name, []), one.rounded] if one.term else one.rounded
     ends = {"valid_from": samples.first_time, "valid_to": samples.last_time}
     keys |= {key: float(f"{time:.{LEAST_DIGITS}g}") for key, time in ends.items()}
-    quoted = _written(name, "name")
+    quoted = written(name, "name")
     try:
         case = Case(_CASE.format(quoted) + f"&material name = {quoted} /\n")
     except Error as error:
@@ -402,7 +467,7 @@ def _lines(keys: Mapping[str, Any], model: str) -> Iterator[str]:
         if not isinstance(value, str):
             # no data are known better
             value = [float(f"{x:.7e}") for x in np.atleast_1d(value)]
-        text = f"   {key} = {_written(value, key)}"
+        text = f"   {key} = {written(value, key)}"
         if key in ("moduli", "times"):
             text = textwrap.fill(text, 96, subsequent_indent=" " * (len(key) + 6))
         about = case._describe(f"m.{key}")

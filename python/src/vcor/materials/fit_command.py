@@ -15,9 +15,11 @@ from typing import Any
 import numpy as np
 
 from .. import _command
+from .._coverage import unwarned
 from .._library import Error, FileError, InputError, UsageError, __version__, printable
 from .._text import near, place, write
-from ..case import _written, number, read, with_material
+from ..arguments import written
+from ..case import number, read, with_material
 from .data import add_data_options, columns_option, read_data
 from .fit import (
     MODELS,
@@ -58,7 +60,8 @@ class Sampled:
             self.case[address] = float(values[0])
         self.cor = self.contact_time = math.nan
         try:
-            found = self.case.solve(quantities=["cor", "contact_time"])
+            with unwarned():
+                found = self.case.solve(quantities=["cor", "contact_time"])
             self.cor, self.contact_time = float(found["cor"]), float(found["contact_time"])
         except Error as error:
             self.notes.append(f"the impact has no result ({error}): its window is not known")
@@ -123,7 +126,7 @@ class Sampled:
         """The coefficient of restitution of the case with the material, and with the fit."""
         if not math.isfinite(self.cor):
             return ""
-        name = f"   name = {_written(self.value('name'), 'name')}"
+        name = f"   name = {written(self.value('name'), 'name')}"
         group = re.sub(r"(?m)^   name = .*$", lambda _: name, fit.group, count=1)
         if self.value("shift") is not None:
             # the fit is at the temperature of the impact
@@ -131,10 +134,10 @@ class Sampled:
             kelvin = kelvin if kelvin > 0 else float(self.value("reference_temperature"))
             group = group.replace("\n/", "\n   shift = 'arrhenius'\n   activation_energy = 1.0\n   "
                                   f"reference_temperature = {kelvin!r}\n/")  # fmt: skip
-        group = group.rstrip("\n")
-        case = with_material(self.case, self.name.replace(" ", "_"), lambda _: group)
+        case = with_material(self.case, self.name.replace(" ", "_"), group)
         try:
-            found = float(case.solve(quantities=["cor"])["cor"])
+            with unwarned():
+                found = float(case.solve(quantities=["cor"])["cor"])
         except Error:
             return "  the impact of the case has no result with the fit"
         return (f"  cor of the impact   {self.cor:10.7f}  with the fit {found:10.7f}  difference "
@@ -343,8 +346,9 @@ def _check_options(options: argparse.Namespace) -> dict[str, float]:
     given = options.from_model is not None
     if given and options.data:
         raise UsageError("--from-model takes the place of a data file, found both")
-    if given and (options.units or options.columns or options.shear):
-        raise UsageError("--units, --columns and --shear are for data files, found --from-model")
+    if given and (options.units or options.columns or options.where or options.shear):
+        raise UsageError("--units, --columns, --where and --shear are for data files, found "
+                         "--from-model")  # fmt: skip
     if not given and len(options.data) != 1:
         raise UsageError("fit takes one data file, or --from-model CASE.nml")
     if not given and options.dynamic:
@@ -381,7 +385,7 @@ def _work(options: argparse.Namespace) -> None:
         notes = [f"  note: {note}" for note in sampled.notes]
     else:
         table = read_data(options.data[0], columns_option(options.columns),
-                          options.units)  # fmt: skip
+                          options.units, where=options.where)  # fmt: skip
         samples, source, notes = samples_of(table, ratio, shear=options.shear)
         what = str(table.attrs["taken"]).removeprefix(f"{source}: ")
     stem = Path(source).stem

@@ -9,6 +9,7 @@ import os
 import re
 import sys
 import zipfile
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,10 @@ from .names import read_head
 #: Largest file that is read [bytes], and largest content of a spreadsheet
 MOST_BYTES = 50_000_000
 _MOST_UNPACKED = 4 * MOST_BYTES
+#: Most cells of a spreadsheet, counted up to the last one of each row, and columns of any file
+_MOST_CELLS, MOST_COLUMNS = 10_000_000, 2000
+#: What a cell of a spreadsheet has whose formula fails
+_ERRORS = ("#NULL!", "#DIV/0!", "#VALUE!", "#REF!", "#NAME?", "#NUM!", "#N/A")
 #: Encodings of instruments that do not write Unicode; the one whose names are known is taken
 _ENCODINGS = ("cp1252", "shift_jis", "gb18030", "iso8859_7", "latin-1")
 _NUMBER = re.compile(r"[-+−]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+−]?\d+)?")
@@ -42,6 +47,8 @@ class Row:
     text: str
     cells: list[str]
     remark: bool = False
+    #: Whether it is the name of a sheet, which is a remark
+    sheet: bool = False
 
     def numbers(self) -> int:
         """How many cells are numbers."""
@@ -98,14 +105,21 @@ def digits_of(cell: str) -> tuple[float, int]:
     whole, mark, decimals = re.sub(r"[-+]", "", mantissa).replace(",", ".").partition(".")
     last = len(decimals) if mark else len(whole.rstrip("0")) - len(whole)
     digits = (whole + decimals if mark else whole.rstrip("0")).lstrip("0")
-    return 10.0 ** (int(power or 0) - last), len(digits)
+    return _power_of_ten(power, last), len(digits)
 
 
 def resolution(cell: str) -> float:
     """Half a unit of the last digit of a number."""
     mantissa, _, power = re.sub("[dD]", "e", cell.lower().replace("−", "-")).partition("e")
     digits = re.split("[.,]", mantissa)
-    return 0.5 * 10.0 ** (int(power or 0) - (len(digits[1]) if len(digits) > 1 else 0))
+    return 0.5 * _power_of_ten(power, len(digits[1]) if len(digits) > 1 else 0)
+
+
+def _power_of_ten(power: str, decimals: int) -> float:
+    """Unit of the last of some decimals of a number with a power of ten, 0 or inf beyond reals."""
+    # a float, since a text of thousands of digits is no int
+    exponent = float(power or 0) - decimals
+    return float(f"1e{max(-999.0, min(999.0, exponent)):.0f}")
 
 
 def read_grid(path: str | os.PathLike[str]) -> Grid:
@@ -116,7 +130,7 @@ def read_grid(path: str | os.PathLike[str]) -> Grid:
     raw = _bytes(name)
     name = "stdin" if name == "-" else name
     if raw[:4] == b"PK\x03\x04":
-        return _spreadsheet(name, raw)
+        return _narrow(_spreadsheet(name, raw))
     if raw[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
         raise InputError(f"{name}: found an old spreadsheet (.xls), expected .xlsx or CSV")
     text = _decoded(name, raw)
@@ -124,11 +138,24 @@ def read_grid(path: str | os.PathLike[str]) -> Grid:
     for i, line in enumerate(lines, 1):
         if not line.isprintable() and re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]", line):
             raise InputError(f"{name}:{i}: found a control character, expected a text file")
-    return _split(name, lines)
+    return _narrow(_split(name, lines))
+
+
+def _narrow(grid: Grid) -> Grid:
+    """Refuse rows with more columns than any table of data has."""
+    for row in grid.rows:
+        if len(row.cells) > MOST_COLUMNS and row.filled() > 1:
+            raise InputError(
+                f"{grid.path}:{row.line}: found {len(row.cells)} columns, expected at most "
+                f"{MOST_COLUMNS}"
+            )
+    return grid
 
 
 def _bytes(name: str) -> bytes:
     try:
+        if name == "-" and sys.stdin is None:
+            raise FileError("the standard input is closed")
         if name == "-":
             raw = sys.stdin.buffer.read(MOST_BYTES + 1)
         else:
@@ -178,8 +205,6 @@ def _decoded(name: str, raw: bytes) -> str:
 
 def _spreadsheet(name: str, raw: bytes) -> Grid:
     """Rows of all sheets, one below the other."""
-    import pandas as pd
-
     try:
         with zipfile.ZipFile(io.BytesIO(raw)) as archive:
             if sum(one.file_size for one in archive.infolist()) > _MOST_UNPACKED:
@@ -187,34 +212,56 @@ def _spreadsheet(name: str, raw: bytes) -> Grid:
                     f"{name}: found more than {_MOST_UNPACKED // 10**6} MB in it, "
                     "expected a smaller file"
                 )
-        sheets: dict[Any, Any] = pd.read_excel(
-            io.BytesIO(raw), sheet_name=None, header=None, dtype=object, engine="openpyxl"
+        import openpyxl
+
+        book = openpyxl.load_workbook(
+            io.BytesIO(raw), read_only=True, data_only=True, keep_links=False
         )
-    except (InputError, ModuleNotFoundError, ImportError) as error:
-        if isinstance(error, ImportError) and not isinstance(error, ModuleNotFoundError):
-            raise ModuleNotFoundError(str(error), name="openpyxl") from None
+        return _sheets(name, book.worksheets)
+    except (InputError, ModuleNotFoundError):
         raise
+    except ImportError as error:
+        raise ModuleNotFoundError(str(error), name="openpyxl") from None
     except Exception as error:
         raise InputError(
             f"{name}: the spreadsheet cannot be read ({type(error).__name__})"
         ) from None
+
+
+def _sheets(name: str, sheets: Iterable[Any]) -> Grid:
+    """Rows of sheets, without the empty cells at their ends."""
     rows: list[Row] = []
-    starts, line = [], 0
-    for title, sheet in sheets.items():
+    starts, line, count = [], 0, 0
+    for sheet in sheets:
         starts.append(line + 1)
-        # it may say the temperature
-        rows.append(Row(line + 1, str(title), [str(title)]))
-        for values in sheet.itertuples(index=False, name=None):
+        # it may say the temperature; a name such as 2020 is no row of data
+        title = str(sheet.title)
+        rows.append(Row(line + 1, title, [], remark=True, sheet=True))
+        # a cell far away makes the sheet large, but not the rows that have cells
+        sheet.reset_dimensions()
+        for values in sheet.iter_rows(values_only=True):
             line += 1
-            cells = ["" if v is None or v != v else _cell(v) for v in values]
-            if any(cells):
+            cells = [_cell(value) for value in values]
+            while cells and not cells[-1]:
+                cells.pop()
+            count += len(cells)
+            if count > _MOST_CELLS:
+                raise InputError(
+                    f"{name}:{line}: found more than {_MOST_CELLS // 10**6} million cells up to "
+                    "the last one of each row, expected a smaller spreadsheet"
+                )
+            if cells:
                 rows.append(Row(line, " ".join(filter(None, cells)), cells))
     return Grid(name, rows, "xlsx", [], starts)
 
 
 def _cell(value: Any) -> str:
+    if value is None or value in _ERRORS or value != value:
+        return ""
     if isinstance(value, bool):
         return str(value)
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        value = int(value)
     return repr(value) if isinstance(value, (int, float)) else " ".join(str(value).split())
 
 
@@ -301,7 +348,7 @@ def _labview(name: str, lines: list[str]) -> Grid:
         if in_head or not is_number(cells[0]) and not any(map(is_number, cells[1:])):
             facts[cells[0]] = cells[1:]
             continue
-        if not cells[0] and facts.get("X_Columns", [""])[0] == "No":
+        if not cells[0] and (facts.get("X_Columns") or [""])[0] == "No":
             first, step = (number((facts.get(key) or ["nan"])[0]) for key in ("X0", "Delta_X"))
             cells[0] = repr(first + body * step)
         body += 1

@@ -8,28 +8,29 @@ instead of a number.
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.special import chdtri, ndtri
 
-from .. import _command, _library, _text
+from .. import _command, _library
 from .._differences import slopes
 from .._library import MOST_SEED, Error, Floats, NumericalError, UsageError, whole
 from .._outputs import finish
 from .._text import option
-from ..case import Case, as_case, listed, number, progress_bar, read, scalars, with_material
+from ..arguments import listed, namelists, scalars
+from ..case import Case, as_case, number, read, with_material
+from ..progress import progress_bar
 from .advice import next_measurement, not_determined, probe, product
 from .data import Columns, Units, add_data_options, columns_option
 from .fit import fit
 from .identification_report import figure, report
+from .identified import DATUM, Estimate, Identified, Tangent
 from .limits import BESIDE, OPEN, Better, Fit, Interval
 from .misfit import are_alike
 from .observations import (
@@ -45,6 +46,7 @@ from .observations import (
 )
 from .samples import one_thread
 from .search import STEP, Problem
+from .select import Where
 from .tables import Choice
 
 #: Errors of the impacts to those of the data, small since derivatives are differences of impacts,
@@ -60,113 +62,13 @@ UNSEEN = 0.5
 KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_temperature",
         "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift", "valid_temperature_from",
         "valid_temperature_to")  # fmt: skip
-#: What is said of a datum
-DATUM = ("source", "quantity", "at", "temperature", "value", "sigma", "model", "residual")
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """A parameter that was identified, in SI units."""
-
-    address: str
-    unit: str
-    value: float
-    #: Standard error; nan at a bound: the interval shows what is known
-    standard_error: float
-    #: Profile intervals that hold the value with 68 and 95 %; an open end is 0 or inf
-    interval_68: tuple[float, float]
-    interval_95: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Tangent:
-    """Loss tangent of an impact at pi/t0, which decides what it loses."""
-
-    #: Velocity [m/s] and temperature [K], nan if there is none
-    velocity: float
-    temperature: float
-    #: pi/t0 [rad/s]
-    frequency: float
-    value: float
-    standard_error: float
-
-
-@dataclass(frozen=True)
-class Identification:
+class Identification(Identified):
     """What the data say about the parameters.
 
     `str` gives the report that the command prints.
     """
-
-    case: Case
-    estimates: tuple[Estimate, ...]
-    #: Covariance of the logarithms of the parameters
-    covariance: Floats
-    #: Sum of the squares of (model - datum)/sigma; its degrees of freedom
-    chi2: float
-    dof: int
-    #: Relative error of the data, estimated, with its floor; None: they have errors of their own
-    relative_error: float | None
-    #: Combinations of parameters from the best to the worst determined, with the relative error
-    combinations: tuple[tuple[str, float], ...]
-    eigenvalues: Floats
-    aic: float
-    bic: float
-    #: Whether the model follows the data: they scatter as their errors say, or these are estimated
-    follows: bool
-    #: DATUM of each datum
-    data: tuple[dict[str, Any], ...]
-    #: Times that the data see [s], of a material with a shift at its reference temperature
-    window: tuple[float, float]
-    #: The measurement that would help most: quantity, velocity [m/s], and by how much
-    advice: str
-    #: Prediction: velocity, cor or cor_sphere, and the ends of its 95 % band
-    band: dict[str, list[float]] = field(repr=False)
-    #: Of the measured impact of median velocity at each temperature, or of that of the case
-    loss_tangents: tuple[Tangent, ...] = ()
-    model: str = ""
-    #: Where the model of the impact does not hold, in words
-    validity: str = "good"
-    #: Which columns of the files were taken for what
-    taken: tuple[str, ...] = ()
-    #: Files whose misfits are not noise: neighbours are correlated
-    alike: tuple[str, ...] = ()
-
-    def __getitem__(self, address: str) -> float:
-        """Value of a parameter."""
-        return {one.address: one.value for one in self.estimates}[address]
-
-    def as_dict(self) -> dict[str, Any]:
-        """All results as they are written to JSON."""
-        values = np.array([one.value for one in self.estimates])
-        known = [math.nan if math.isnan(one.standard_error) else 1.0 for one in self.estimates]
-        covariance = self.covariance * np.outer(known, known)
-        deviations = np.sqrt(np.diag(covariance))
-        rows = [dataclasses.asdict(one) for one in self.estimates]
-        keys = ("combination", "relative_error")
-        return _text.document(
-            model=self.model,
-            parameters=[{"name": row.pop("address"), **row} for row in rows],
-            covariance=covariance * np.outer(values, values),
-            correlation=covariance / np.outer(deviations, deviations),
-            fisher={
-                "eigenvalues": self.eigenvalues,
-                "combinations": [dict(zip(keys, one, strict=True)) for one in self.combinations],
-            },
-            chi2=self.chi2,
-            degrees_of_freedom=self.dof,
-            relative_error=self.relative_error,
-            follows=self.follows,
-            misfits_alike=list(self.alike),
-            aic=self.aic,
-            bic=self.bic,
-            window=self.window,
-            validity=self.validity,
-            loss_tangents=[dataclasses.asdict(one) for one in self.loss_tangents],
-            next=self.advice,
-            data=self.data,
-            band=self.band,
-        )
 
     def __str__(self) -> str:
         return report(self)
@@ -187,6 +89,7 @@ def identify(
     seed: int = 1,
     columns: Columns = None,
     units: Units = None,
+    where: Where = None,
 ) -> Identification:
     """Identify parameters of a case from measured data, as `vcor identify` does.
 
@@ -216,6 +119,9 @@ def identify(
     columns, units
         Which columns of files are what, and their units, as for `vcor.read_data`. A text counts in
         the files that have such a head.
+    where
+        Which rows of files are taken, as for `vcor.read_data`; a condition counts in the files that
+        have such a column.
 
     Returns
     -------
@@ -241,7 +147,7 @@ def identify(
     alone: Any = [data] if hasattr(data, "keys") else listed(data)
     # a DataFrame is not a Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
-    choice = Choice(columns, units, sum(not isinstance(one, dict) for one in sources))
+    choice = Choice(columns, units, sum(not isinstance(one, dict) for one in sources), where)
     if not sources:
         raise UsageError("expected at least one file or table of data")
     free = [address for address in free if address not in fix]
@@ -473,12 +379,9 @@ def _with_model(
         for one in fit((times, moduli), model=kind, name=name).parameters:
             keys[one.name] = [one.value]
 
-    def other(old: re.Match[str]) -> str:
-        kept = [line for line in old[0].splitlines() if line.split("=")[0].strip() in KEPT]
-        rows = [f"   {key} = {', '.join(repr(float(x)) for x in row)}" for key, row in keys.items()]
-        return "\n".join(["&material", f"   model = '{kind}'", *kept, *rows, "/"])
-
-    changed = with_material(case, name, other)
+    kept = {key: case[f"{name}.{key}"] for key in KEPT}
+    group = {"model": kind, **{key: x for key, x in kept.items() if x is not None}, **keys}
+    changed = with_material(case, name, namelists({"material": group}))
     addresses = [
         f"{name}.{key}({i + 1})" if key in ("moduli", "times") else f"{name}.{key}"
         for key, row in keys.items()
@@ -539,7 +442,8 @@ def _work(options: argparse.Namespace) -> None:
     models = [word.strip() for words in options.model for word in words.split(",")]
     case = read(options.case, *(name for name in options.data if name.endswith(".nml")))
     data = [name for name in options.data if not name.endswith(".nml")]
-    said: dict[str, Any] = {"columns": columns_option(options.columns), "units": options.units}
+    said: dict[str, Any] = {"columns": columns_option(options.columns), "units": options.units,
+                            "where": options.where}  # fmt: skip
     for model in models or [None]:
         try:
             found.append(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +13,9 @@ from .. import _library
 from .._library import printable
 from ..case import number
 from .advice import percent
+from .identified import Identified
 from .observations import COEFFICIENTS, materials_of
 from .units import ZERO_C
-
-if TYPE_CHECKING:
-    from .identification import Identification
 
 #: Data that are shown at most
 _MOST = 20
@@ -32,7 +30,7 @@ _ACROSS = {
 }
 
 
-def report(found: Identification) -> str:
+def report(found: Identified) -> str:
     """What the command prints."""
     lines = [
         f"{len(found.data)} data of {', '.join(dict.fromkeys(r['source'] for r in found.data))}",
@@ -106,7 +104,7 @@ def report(found: Identification) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _sources(found: Identification) -> dict[str, str]:
+def _sources(found: Identified) -> dict[str, str]:
     """Files of data by their names without folders and endings."""
     return {row["source"]: printable(Path(row["source"]).stem) for row in found.data}
 
@@ -121,7 +119,7 @@ class _Look:
     text: str
 
 
-def _looks(found: Identification) -> dict[tuple[str, str], _Look]:
+def _looks(found: Identified) -> dict[tuple[str, str], _Look]:
     """Colours by temperature, or by source at one temperature; markers by source."""
     import matplotlib as mpl
 
@@ -146,7 +144,7 @@ def _looks(found: Identification) -> dict[tuple[str, str], _Look]:
     return looks
 
 
-def figure(found: Identification) -> Any:
+def figure(found: Identified) -> Any:
     """Figure (matplotlib): data, model with the band of cor, and residuals below."""
     from ..plot import COLUMN, HEIGHT, PAGE, _label_decades, _labelled, _legend, drawn
 

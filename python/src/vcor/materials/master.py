@@ -21,10 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _command, _text
-from .._library import Floats, InputError, NumericalError, within
+from .._library import Floats, InputError, NumericalError, UsageError, within
 from .._text import command, option
-from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli
+from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli, together
 from .samples import one_thread
+from .select import Where
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .tables import Choice
 from .units import ZERO_C
@@ -123,10 +124,8 @@ class Master:
             log10_shift=self.log_shift,
             log10_shift_error=self.log_error,
             vertical_shift=self.vertical,
-            laws=[{"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms,
-                   "determined": one.determined}
-                  for one in self.laws],
-        )  # fmt: skip
+            laws=[_law(one) for one in self.laws],
+        )
 
     def __str__(self) -> str:
         kelvin = self.reference_temperature
@@ -142,16 +141,19 @@ class Master:
         if self.law and self.flat:
             lines += ["", *self.flat, f"by law: these steps are those of {self.law.name}"]
         for law in self.laws:
-            constants = ", ".join(
-                f"{name} {value:.5g} +- {law.errors[name]:.2g} {_UNITS[name]}".strip()
-                for name, value in law.values.items()
-            )
-            lines += ["", f"{law.name}: {constants}"]
-            if not law.determined:
-                lines.append("   not determined by these data" + (
-                    f", only wlf_c1/wlf_c2 {law.ratio[0]:.4g} +- {law.ratio[1]:.2g} 1/K: the "
-                    "temperatures are too close together" if law.name == "WLF" else ""
-                ))  # fmt: skip
+            if law.name == "WLF" and not law.determined:
+                value, error = law.ratio
+                lines += ["", f"WLF: wlf_c1/wlf_c2 {value:.4g} +- {error:.2g} 1/K"]
+                lines.append("   which is all that these data determine of its constants: the "
+                             "temperatures are too close together, or the shift factors do not "
+                             "bend as WLF does")  # fmt: skip
+            else:
+                constants = ", ".join(
+                    f"{name} {value:.5g} +- {law.errors[name]:.2g} {_UNITS[name]}".strip()
+                    for name, value in law.values.items()
+                )
+                lines += ["", f"{law.name}: {constants}"]
+                lines += [] if law.determined else ["   not determined by these data"]
             if len(law.values) < len(self.temperatures) - 1 - len(self.flat):
                 lines.append(f"   misses the steps between temperatures by {law.rms:.2g} decades, "
                              f"{law.misfit:.2g} times their errors")  # fmt: skip
@@ -202,6 +204,7 @@ def master(
     vertical_shift: bool | None = None,
     columns: Columns = None,
     units: Units = None,
+    where: Where = None,
 ) -> Master:
     """Master curve of moduli at several temperatures, as `vcor master` makes it.
 
@@ -218,6 +221,8 @@ def master(
     columns, units
         Which columns of the files are what, and their units, as for `vcor.read_data`. A text
         counts in the files that have such a head.
+    where
+        Which rows are taken, as for `vcor.read_data`.
 
     Returns
     -------
@@ -233,13 +238,18 @@ def master(
         shift and no law of the other steps does.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
+    if not names:
+        raise UsageError("expected at least one file of data")
     if poisson_ratio is not None:
         within(poisson_ratio, option("poisson_ratio"), -1, 0.5)
-    choice = Choice(columns, units, len(names))
+    choice = Choice(columns, units, len(names), where)
     read = [one for name in names for one in read_moduli(name, choice, poisson_ratio=poisson_ratio)]
     choice.refuse_unseen("the files have")
     found = of_curves(
-        [curve_of(one) for one in read], str(names[0]), reference_temperature, vertical_shift
+        [curve_of(one) for one in together(read)],
+        str(names[0]),
+        reference_temperature,
+        vertical_shift,
     )
     return dataclasses.replace(
         found, taken=tuple(dict.fromkeys(one.attrs["taken"] for one in read))
@@ -368,7 +378,7 @@ def _work(options: argparse.Namespace) -> None:
     found = master(
         options.data, reference_temperature=reference, poisson_ratio=ratio,
         vertical_shift=None if vertical is None else vertical == "yes",
-        columns=columns_option(options.columns), units=options.units,
+        columns=columns_option(options.columns), units=options.units, where=options.where,
     )  # fmt: skip
     dynamic = found.curves[0].dynamic
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa],set" if dynamic else "t [s],E [Pa],set"
@@ -389,6 +399,17 @@ def _work(options: argparse.Namespace) -> None:
     from .._outputs import finish
 
     finish(options, report, stem, texts, found.figure())
+
+
+def _law(law: Law) -> dict[str, Any]:
+    """A law as it is written to JSON: without constants of WLF that are not determined."""
+    known = law.name != "WLF" or law.determined
+    found: dict[str, Any] = {"law": law.name}
+    for key, values in (("values", law.values), ("errors", law.errors)):
+        found[key] = {name: one if known else None for name, one in values.items()}
+    if law.name == "WLF":
+        found["ratio"], found["ratio_error"] = law.ratio
+    return {**found, "rms": law.rms, "determined": law.determined}
 
 
 def _rows(columns: Sequence[Floats]) -> str:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .. import _library
-from .units import plain_unit, quantities_of, suffix_unit
+from .labels import TEMPERATURE, read_label, unified
+from .units import plain_unit, quantities_of, size, suffix_unit
 
 
 @dataclass(frozen=True)
@@ -41,16 +42,32 @@ QUANTITIES = {
 }  # fmt: skip
 _SYMBOLS = {symbol: one for one in QUANTITIES.values() for symbol in one.symbols}
 _WORDS = {word: one for one in QUANTITIES.values() for word in one.words}
+#: Letters of a name at most: what is longer is a text
+MOST_LETTERS = 200
 #: Columns of a laboratory's table that are no data
 ASIDE = {"", *_NAMES["aside"]}
+#: Columns of texts that rows may end before
+REMARKS = set(_NAMES["remarks"])
+#: Columns of the summary that no one measures
+COMPUTED = frozenset(_NAMES["computed"])
+#: Words for the error of a datum
+_ERRORS = frozenset(_NAMES["errors"])
+#: By quantity: words in a name that is not known which make it likely
+CUES: dict[str, list[str]] = _NAMES["cues"]
+#: Words for a mean value, which change nothing
+_AVERAGE = re.compile(
+    r"^(?:average|avg\.?|mean|mittlere[rs]?|mittel|moyenne?|promedio)(?: of(?: the)?)? "
+    r"| \(?(?:average|avg\.?|mean|moyenne?|promedio|mittel)\)?$"
+)
 _SHEAR = re.compile(
     r"shear|schub|scher|cisaillement|cizalla|せん断|剪切|\bG(?![a-z])|\|G", re.UNICODE
 )
 _TENSILE = re.compile(
     r"young|tensile|zug|elastizit|traction|引張|拉伸|\bE(?![a-z])|\|E|dehn", re.UNICODE
 )
-_DEGREES = r"([-+]?\d+(?:[.,]\d+)?)\s*(?:°|º|deg\.?)?\s*(C|K)"
-_AT = re.compile(rf"[\s,;@_(\[]+(?:at|bei|à|a|@|T\s*=)?\s*{_DEGREES}\b\s*[)\]]?")
+_AT = re.compile(
+    rf"[\s,;@_(\[]+(?:(?:at|bei|à|a|@)\s*)?(?:T\s*[=:]?\s*)?{TEMPERATURE}\s*[)\]]?", re.UNICODE
+)
 
 
 @dataclass(frozen=True)
@@ -79,6 +96,10 @@ class Head:
     implied: bool = False
     #: What is wrong with it, for a message
     flaw: str = ""
+    #: Why its temperature is not sure, for a message
+    doubt: str = ""
+    #: Whether the name is a symbol, which others may use for something else
+    symbol: bool = False
 
     @property
     def key(self) -> str:
@@ -116,6 +137,8 @@ def quantity(text: str) -> Quantity | None:
     found = _SYMBOLS.get(_symbol(text)) or _WORDS.get(plain(text))
     if found or not text:
         return found
+    if (bare := _AVERAGE.sub("", plain(text))) != plain(text) and bare:
+        return quantity(bare)
     by_name = {plain(name): one for name, one in QUANTITIES.items()}
     if found := by_name.get(plain(text)) or _columns().get(plain(text)):
         return found
@@ -162,28 +185,40 @@ def _parts(text: str) -> list[tuple[str, str]]:
 def read_head(text: str) -> Head:
     """What the head of a column says: its quantity, its unit, and what goes with them."""
     given = text
-    text = unicodedata.normalize("NFKC", text.strip().strip('"')).strip().strip(":")
-    temperature = float("nan")
-    if found := _AT.search(text):
-        temperature = float(found[1].replace(",", ".")) + (273.15 if found[2] == "C" else 0.0)
-        text = (text[: found.start()] + text[found.end() :]).strip()
+    if len(text) > MOST_LETTERS:
+        return Head(given)
+    text = text.strip()
+    if text.startswith('"'):
+        # quoted; at the end alone it belongs to E" and G"
+        text = text[1:].removesuffix('"')
+    text = unicodedata.normalize("NFKC", text).strip().strip(":")
+    temperature, doubt, plainer = float("nan"), "", unified(text)
+    if (found := _AT.search(plainer)) and (label := read_label(found[0])):
+        temperature, doubt = label.kelvin, label.flaw
+        text = (plainer[: found.start()] + plainer[found.end() :]).strip()
     text, base, flaw = _logarithm(text)
     bare, unit, sigma, known = "", "", False, None
     for name, of in _parts(text):
-        stem = re.fullmatch(r"(.+?)[ _](?:sigma|sd|std)", name.strip())
-        known = quantity(stem[1] if stem else name)
-        if known or is_address(name):
-            bare, unit, sigma = (stem[1] if stem else name), of, stem is not None
+        stem = _of_error(name)
+        known = quantity(stem or name)
+        suffix = text[len(name) :].startswith("_") and of
+        if known and (_is_quotient(text[len(name) :]) or (suffix and not size(of, known.unit))):
+            # E''/E', or an index such as that of e_s, which is no unit of the quantity
+            known = None
+        elif known or is_address(stem or name):
+            bare, unit, sigma = stem or name, of, bool(stem)
             break
     else:
         # not known: its unit is what stands in brackets
         unit = next((of for name, of in _parts(text)[1:] if quantities_of(of)), "")
-        return Head(given, unit=unit, base=base, temperature=temperature, flaw=flaw)
+        return Head(given, unit=unit, base=base, temperature=temperature, flaw=flaw,
+                    doubt=doubt)  # fmt: skip
     if not known:
         return Head(given, re.sub(r"\s+", "_", bare.strip()), "", unit, base, temperature,
-                    sigma=sigma, flaw=flaw)  # fmt: skip
+                    sigma=sigma, flaw=flaw, doubt=doubt)  # fmt: skip
     angular = known.name == "angular_frequency"
-    implied = not unit and (_symbol(bare) in known.symbols or angular or plain(bare) == "freq")
+    symbol = _symbol(bare) in known.symbols
+    implied = not unit and (symbol or angular or plain(bare) == "freq")
     if implied:
         unit = known.implied
     shear = None
@@ -199,7 +234,41 @@ def read_head(text: str) -> Head:
         shear = kinds[0] if kinds[0] != kinds[1] else None
     name = "frequency" if angular else known.name
     return Head(given, name, known.unit, "" if unit in ("[]",) else unit, base, temperature, shear,
-                sigma, angular, implied and bool(unit), flaw)  # fmt: skip
+                sigma, angular, implied and bool(unit), flaw, doubt,
+                symbol)  # fmt: skip
+
+
+def _of_error(name: str) -> str:
+    """Name of the quantity whose error a column has by its name, empty if it has none.
+
+    `cor std`, `contact_time_error`, `cor (sd)`, `error of cor`, `sigma(cor)`.
+    """
+    name = name.strip()
+    if (found := re.fullmatch(r"(.+?)\s*[(\[](.+)[)\]]", name)) and plain(found[2]) in _ERRORS:
+        return found[1]
+    if found and plain(found[1]) in _ERRORS:
+        return found[2]
+    for mark in re.finditer(r"[\s_\-]+", name):
+        before, behind = name[: mark.start()], name[mark.end() :]
+        if plain(behind) in _ERRORS:
+            return before
+        if plain(before) in _ERRORS:
+            return re.sub(r"(?i)^(of|in|on|von|der|des|de|du|la)[\s_]+(the[\s_]+)?", "", behind)
+    return ""
+
+
+def _is_quotient(rest: str) -> bool:
+    """Whether what follows a name divides it by a quantity, as in `|G*|/sin d` and `E''/E'`."""
+    if not (found := re.match(r"\s*/\s*(.+)", rest)) or quantities_of(found[1]):
+        return False
+    below = re.sub(r"\s*[(\[][^()\[\]]*[)\]]$", "", found[1]).strip()
+    start = re.sub(r"_?(\d|inf|max|ref|∞)$", "", below)
+    return bool(is_function(below) or quantity(below) or quantity(start))
+
+
+def is_function(text: str) -> bool:
+    """Whether a text has a trigonometric function: it is no quantity that is measured."""
+    return re.search(r"(?<![a-z])(sin|cos|tan)(?![b-z])", plain(text)) is not None
 
 
 def _logarithm(text: str) -> tuple[str, float, str]:

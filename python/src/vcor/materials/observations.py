@@ -15,10 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from .. import _library
-from .._library import Error, Floats, InputError, NoResultWarning
-from .._text import near
-from ..case import Case, arrays, number, radius_of
-from .data import SAME_TEMPERATURE, curves, read_data, tensile
+from .._coverage import unwarned
+from .._library import Error, Floats, InputError, NoResultWarning, ValidityWarning
+from .._text import near, option
+from ..arguments import arrays
+from ..case import Case, number, radius_of
+from .data import curves, read_data, tensile
+from .names import COMPUTED
+from .reader import SAME_TEMPERATURE
 from .tables import Choice
 
 #: By column: the unit of its last digit, and its most significant digits; of arrays none is known
@@ -40,6 +44,10 @@ SETTINGS = {
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Factor between neighbouring coefficients of restitution that no sequence of bounces has
 UNLIKE = 2.0
+#: Part of the largest force above which a pulse is one of an impact, and lengths of the longest
+#: pulse between impacts: a flight lasts far longer than a contact, and contacts with a beam or a
+#: plate that swings follow each other within some lengths
+PULSE, APART = 0.3, 20.0
 #: Relative error of the moduli of a model, with room: functions in double precision
 ERROR_OF_MODULI = 1e-11
 #: Accuracy with waves = 'body', where a finer one takes seconds
@@ -167,7 +175,7 @@ class Impacts:
 
     def validity(self, case: Case) -> list[tuple[str, str]]:
         """Whether the model holds, and the column that decides, of each impact."""
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), unwarned(ValidityWarning):
             warnings.simplefilter("ignore", NoResultWarning)
             found = case.points(self.settings, ["validity", "validity_cause"], progress=False)
         return [
@@ -262,7 +270,8 @@ class Record:
 
     def _force(self, case: Case) -> Floats:
         """The force from the start and on the baseline that fit best, by Gauss and Newton."""
-        history = case.history()
+        with unwarned():
+            history = case.history()
         times, forces = history["time"].values, history["force"].values
         course = CubicSpline(times, forces)
         slope = course.derivative()
@@ -506,7 +515,7 @@ def observations(
     materials, taken, written = materials_of(free), "", NO_DIGITS
     if isinstance(source, Mapping):
         name = "data"
-        columns = arrays(source)
+        columns, taken = _measured(arrays(source))
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
     else:
@@ -532,6 +541,20 @@ def observations(
     return block
 
 
+def _measured(columns: dict[str, Floats]) -> tuple[dict[str, Floats], str]:
+    """Columns without those that no one measures, whose errors are errors of data; what is left."""
+    found: dict[str, Floats] = {}
+    left = []
+    for name, column in columns.items():
+        if (stem := name.removesuffix("_error")) in columns and stem != name:
+            found.setdefault(f"{stem}_sigma", column)
+        elif name in COMPUTED:
+            left.append(name)
+        else:
+            found[name] = column
+    return found, f"data: not taken: {', '.join(left)}" * bool(left)
+
+
 def read_columns(
     path: str | os.PathLike[str],
     case: Case,
@@ -545,6 +568,8 @@ def read_columns(
         return case._describe(address).unit
 
     data = read_data(path, choice, unit_of=unit_of)
+    if data.attrs["kind"] == "record":
+        _refuse_several(data)
     if data.attrs["kind"] in ("dynamic", "relaxation"):
         ratios = [number(case, f"{name}.poisson_ratio") for name in materials]
         data = tensile(data, ratios[0] if ratios else None)
@@ -553,6 +578,33 @@ def read_columns(
             part["temperature"] = part.attrs["temperature"]
         return _arrays(pd.concat(parts)), data.attrs["taken"], data.attrs["digits"]
     return _arrays(data), data.attrs["taken"], data.attrs["digits"]
+
+
+def _refuse_several(data: pd.DataFrame) -> None:
+    """Refuse a record of several impacts: each has a velocity of its own."""
+    name = "force" if "force" in data else "acceleration"
+    if name not in data or "time" not in data:
+        return
+    time, force = data["time"].to_numpy(), data[name].to_numpy()
+    good = np.flatnonzero(np.isfinite(time) & np.isfinite(force))
+    if len(good) < 5:
+        return
+    force = force[good] - np.median(force[good])
+    force *= np.sign(force[np.argmax(np.abs(force))])
+    high = np.flatnonzero(force > PULSE * force.max())
+    pulses = np.split(high, np.flatnonzero(np.diff(high) > 1) + 1)
+    at = [(time[good[pulse[0]]], time[good[pulse[-1]]]) for pulse in pulses]
+    longest = max(end - begin for begin, end in at)
+    # contacts that follow one another at once belong to one impact
+    apart = [0, *(i for i in range(1, len(at)) if at[i][0] - at[i - 1][1] > APART * longest)]
+    if longest > 0 and len(apart) > 1:
+        first = pulses[apart[1]][0] + pulses[apart[1] - 1][-1]
+        begin, end = data.index[good[0]], data.index[good[first // 2]]
+        raise InputError(
+            f"{data.attrs['path']}:{data.index[good[pulses[apart[1]][0]]]}: found impact 2 of "
+            f"{len(apart)} in one record, expected a single one, as each has a velocity of its "
+            f"own: {option('where', {'line': f'{begin}:{end}'})} takes the first"
+        )
 
 
 def _arrays(data: pd.DataFrame) -> dict[str, Floats]:

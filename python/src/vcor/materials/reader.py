@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from .._library import Floats, InputError, UsageError, printable
 from .._text import near, option
+from . import hints
 from .grid import (
     Grid,
     Row,
@@ -20,19 +22,28 @@ from .grid import (
     is_number,
     number,
 )
-from .names import ASIDE, QUANTITIES, Head, is_address, plain
+from .labels import COLDEST, Label
+from .names import ASIDE, COMPUTED, QUANTITIES, REMARKS, Head, is_address, plain
+from .select import words_of
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
-from .units import examples, plain_unit, quantities_of, size
+from .units import ZERO_C, examples, plain_unit, quantities_of, size
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Temperature without a unit below which it is not in kelvin
-_COLDEST = 150.0
 #: Range of measured moduli, times and frequencies
 _LEAST, _MOST = 1e-30, 1e30
 #: Logarithm of the difference between E''/E' and tan delta by which they contradict each other
 _CONTRADICTION = 0.1
+#: Difference of temperatures that begins another curve [K]
+SAME_TEMPERATURE = 1.0
+#: Sets that a report names one by one
+MOST_SETS = 20
+#: Names of compliances
+_COMPLIANCE = re.compile(
+    r"(?i:complian|nachgiebig|complaisance|コンプライアンス|柔量)"
+    r"|^\s*J(\(t\)|_?t|['\"′″*]{0,2})?\s*([\[(/].*)?$"
+)
 ALIKE = {
     "dynamic": "moduli against frequency",
     "relaxation": "moduli against time",
@@ -47,7 +58,8 @@ _BESIDE = {
     "shift": {"temperature"},
     "record": {"velocity", "temperature", "radius", "diameter", "mass", "set"},
 }
-_DYNAMIC = {"storage_modulus", "loss_modulus", "complex_modulus"}
+_MODULI = ("storage_modulus", "loss_modulus", "complex_modulus")
+_DYNAMIC = set(_MODULI)
 _IMPACTS = {
     "velocity",
     "rebound_velocity",
@@ -56,9 +68,6 @@ _IMPACTS = {
     "bounce_time",
     "event_time",
 }
-#: What a column of impacts of a name or a unit probably is
-_MEANT = {"rebound": "resilience", "1": "resilience", "m/s": "velocity", "m": "drop_height",
-          "s": "contact_time", "N": "max_force", "K": "temperature"}  # fmt: skip
 _SETTINGS = {"velocity", "drop_height", "temperature", "radius", "diameter", "mass", "set"}
 
 
@@ -69,28 +78,36 @@ class Reader:
         self, grid: Grid, choice: Choice, unit_of: Callable[[str], str] | None, whole: bool
     ) -> None:
         self.whole = whole
+        grid = choice.select(grid)
         self.path, self.grid, self.choice, self.unit_of = grid.path, grid, choice, unit_of
         self.names: dict[str, str] = {}
         self.units: dict[str, str] = {}
         #: By column: the unit of its last digit in SI units, and its most significant digits
         self.digits: dict[str, tuple[float, int]] = {}
         self.left: list[str] = []
+        #: How many rows the user wants
+        self.selected = ""
+        #: Points that were left out, and why
+        self.failed: list[str] = []
         self.comma = False
         self._shear: list[tuple[bool, str]] = []
+        #: Temperatures that are stated, but not sure
+        self._doubts: list[Label] = []
 
     def parts(self) -> tuple[list[pd.DataFrame], str]:
         """Frames of the tables of one kind, and the kind."""
         tables = tables_of(self.grid, self.choice)
         self.choice.look(tables)
         if not self.choice.shared:
-            self.choice.refuse_unseen(f"{self.path} has")
+            self.choice.refuse_unread(f"{self.path} has")
         if not tables:
             raise self._no_table()
+        tables = self._selected(tables)
         for table in tables:
             table.heads = self.choice.heads(table)
         kinds = [self._kind(table) for table in tables]
         whole = [
-            bool(kind) and not self._lacks(table, kind)
+            bool(kind) and not self._lacks(_known(table), kind)
             for table, kind in zip(tables, kinds, strict=True)
         ]
         if not any(whole):
@@ -100,7 +117,7 @@ class Reader:
         if len(found) > 1:
             raise InputError(
                 f"{self.path}: found {' and '.join(ALIKE[kind] for kind in sorted(found))}"
-                ", expected a file with one of them"
+                f", expected a file with one of them{self._one_sheet()}"
             )
         (kind,) = found
         frames: list[pd.DataFrame] = []
@@ -108,6 +125,7 @@ class Reader:
             if one:
                 frames += self._frames(table, kind, len(frames))
             else:
+                self._all_cells(table)
                 self.left += [f"table at line {table.line}"] * bool(_known(table))
         if (
             kind in ("record", "impacts")
@@ -115,9 +133,80 @@ class Reader:
             and (kind == "record" or any({"bounce_time"} & set(one) for one in frames))
         ):
             raise InputError(
-                f"{self.path}: found {len(frames)} tables of {ALIKE[kind]}, expected one"
+                f"{self.path}: found {len(frames)} tables of {ALIKE[kind]}, expected "
+                f"one{self._one_sheet()}"
             )
+        self._same_labels(frames)
+        frames = self._at_temperatures(frames)
+        if not self.choice.shared:
+            self.choice.refuse_unseen(f"{self.path} has")
         return frames, kind
+
+    def _one_sheet(self) -> str:
+        """How a user takes one sheet of several, for a message."""
+        sheets = [row.text for row in self.grid.rows if row.sheet]
+        return f", or {option('where', {'sheet': sheets[0]})}" if len(sheets) > 1 else ""
+
+    def _selected(self, tables: Sequence[Table]) -> list[Table]:
+        """Tables with the rows that the user wants, by their columns."""
+        before = sum(len(table.rows()) for table in tables)
+        found = [table for table in tables if self.choice.filter(table)]
+        rows = sum(len(table.rows()) for table in found)
+        if rows < before:
+            self.selected = f"{rows} of {before} rows"
+        if not found:
+            wanted = self.choice.where
+            raise next((one for one in wanted if not one.met), wanted[-1]).refusal(self.path)
+        return found
+
+    def _at_temperatures(self, frames: Sequence[pd.DataFrame]) -> list[pd.DataFrame]:
+        """Rows at the temperatures that the user wants."""
+        found = []
+        for frame in frames:
+            taken = np.ones(len(frame), dtype=bool)
+            for one in self.choice.where:
+                if plain(one.name) == "temperature" and "temperature" in frame:
+                    taken &= one.temperatures(frame["temperature"].to_numpy(dtype=float))
+            if taken.all():
+                found.append(frame)
+            elif taken.any():
+                found.append(frame[taken].copy())
+        if not found:
+            one = next(one for one in self.choice.where if plain(one.name) == "temperature")
+            raise one.refusal(f"{self.path} has")
+        return found
+
+    def _same_labels(self, frames: Sequence[pd.DataFrame]) -> None:
+        """Refuse temperatures that are not sure, and sets with and without a temperature."""
+        several = len({label.line for label in self._doubts}) > 1
+        for label in self._doubts:
+            # `T = 5` above a single set may be a thickness, and any temperature one of storage
+            if several or (label.has_unit and label.alone):
+                raise InputError(f"{self.path}:{label.line}: {label.flaw}")
+        have = ["temperature" in one for one in frames]
+        if any(have) and not all(have):
+            first, other = (frames[have.index(x)].index[0] for x in (True, False))
+            raise InputError(
+                f"{self.path}:{other}: found points without a temperature, while those at line "
+                f"{first} have one, expected it for all, such as a line T = 20 °C above them"
+            )
+
+    def _all_cells(self, table: Table) -> None:
+        """Refuse rows that end before the last name, as cells may be missing anywhere in them."""
+        if self.grid.separator == "xlsx":
+            # cells of a spreadsheet have places of their own
+            return
+        rows = table.rows()
+        need = len(table.heads)
+        while need and _may_end_before(table.heads[need - 1], need - 1, rows):
+            need -= 1
+        for row in rows:
+            if len(row.cells) < need:
+                n, last = len(row.cells), table.heads[need - 1].text.strip()
+                raise InputError(
+                    f"{self.path}:{row.line}: found {n} cell{'s' * (n > 1)} below {need} names up "
+                    f"to '{last}', expected an empty cell where a number is missing"
+                )
 
     def _kind(self, table: Table) -> str:
         """Kind of a table by the names that it has."""
@@ -136,18 +225,18 @@ class Reader:
             return "relaxation"
         if "shift_factor" in names:
             return "shift"
-        if "loss_tangent" in names and ("frequency" in names or not names & _IMPACTS):
-            return "dynamic"
         history, impact = quantities()
+        impact -= COMPUTED
+        if "loss_tangent" in names and ("frequency" in names or not names & (impact | _IMPACTS)):
+            return "dynamic"
         if times and names & (history | {"force", "acceleration"}):
             return "record"
         if names & (impact | _IMPACTS) or any(is_address(name) for name in names):
             return "impacts"
         return ""
 
-    def _lacks(self, table: Table, kind: str) -> list[str]:
-        """Quantities that a table of some kind needs, and does not have."""
-        names = _known(table)
+    def _lacks(self, names: set[str], kind: str) -> list[str]:
+        """Quantities that a table of some kind needs, and does not have among its names."""
         if not self.whole:
             return []
         if kind == "dynamic":
@@ -182,7 +271,9 @@ class Reader:
         elif kind == "record":
             found = {"time", "force", "acceleration"} | quantities()[0] | _BESIDE[kind]
         else:
-            found = {name for name in names if name not in ("time", "run_time", "frequency")}
+            found = names - {"time", "run_time", "frequency"} - (COMPUTED - {*self.choice.columns})
+            # errors of settings have no part in a fit
+            return found | {f"{name}_sigma" for name in found - _SETTINGS}
         if "time" in found and "time" not in names:
             found = found - {"time"} | {"run_time"}
         return {key for name in found for key in (name, f"{name}_sigma")}
@@ -191,31 +282,35 @@ class Reader:
         """Frames of a table: one for each temperature in its heads, and below each title."""
         if table.flaw:
             raise InputError(table.flaw)
+        self._all_cells(table)
         wanted = self._wanted(table, kind)
         if kind == "impacts":
             self._all_known(table)
         groups = groups_of(table, self.path, wanted)
         taken = {column.index for _, group in groups for column in group.values()}
-        self.left += [
-            head.text.strip()
-            for i, head in enumerate(table.heads)
-            if i not in taken and head.text.strip() and head.text.strip() not in self.left
-        ]
+        self._leave(table, taken)
         units = {}
         for _, group in groups:
             units.update(self._units(table, group))
         frames: list[pd.DataFrame] = []
         for tag, group in groups:
             for part, (title, rows) in enumerate(table.parts):
-                at = title if math.isnan(tag) else tag
                 frame = self._frame(
-                    Table(table.line, table.heads, [(at, rows)]), group, units, kind
+                    Table(table.line, table.heads, [(title, rows)]), group, units, kind
                 )
                 if frame is None:
                     continue
+                at = title.kelvin if math.isnan(tag) else tag
+                if part and abs(title.kelvin - at) > SAME_TEMPERATURE:
+                    raise InputError(
+                        f"{self.path}:{title.line}: found {_celsius(title.kelvin)} above numbers "
+                        f"whose names say {_celsius(at)}, expected names of their own above them"
+                    )
                 if "temperature" not in frame and math.isfinite(at):
                     frame["temperature"] = at
                     self.units["temperature"] = "K"
+                elif "temperature" not in frame and title.flaw:
+                    self._doubts.append(title)
                 own = frame["set"].to_numpy() if "set" in frame else np.zeros(len(frame))
                 changes = np.concatenate([[0], np.cumsum(np.diff(own) != 0)])
                 frame["set"] = first + len(frames) + changes
@@ -223,6 +318,18 @@ class Reader:
                 frame.attrs["table"] = (table.line, part, tag)
                 frames.append(frame)
         return frames
+
+    def _leave(self, table: Table, taken: set[int]) -> None:
+        """Note the columns that are not taken, and the words by which they select rows."""
+        for i, head in enumerate(table.heads):
+            text = head.text.strip()
+            if i in taken or not text or any(one.partition(" (")[0] == text for one in self.left):
+                continue
+            words = words_of([row.cells[i] for row in table.rows() if i < len(row.cells)])
+            if words:
+                how = option("where", {text: words[0]})
+                text += f" ({', '.join(words)}: {how} takes one)"
+            self.left.append(text)
 
     def _frame(
         self, table: Table, group: dict[str, Column], units: dict[int, str], kind: str
@@ -235,9 +342,18 @@ class Reader:
         rows = [row for row in rows if not all(is_missing(one.cell(row)) for one in group.values())]
         if not rows:
             return None
+        if self.whole and kind in ("dynamic", "relaxation", "shift"):
+            rows = self._measured(rows, group)
         values: dict[str, Floats] = {}
         for key, column in group.items():
             name = "time" if key == "run_time" else key
+            cells = [column.cell(row) for row in rows]
+            if key == "set" and not all(map(is_number, cells)):
+                # words, by the order in which they come
+                codes = {word: i for i, word in enumerate(dict.fromkeys(cells))}
+                values[name] = np.array([codes[cell] for cell in cells], dtype=float)
+                self.names.setdefault(name, column.head.text.strip())
+                continue
             values[name] = self._numbers(rows, column, units.get(column.index, ""), name, kind)
             self.names.setdefault(name, column.head.text.strip())
             self.units[name] = column.head.si
@@ -254,6 +370,25 @@ class Reader:
         if self.whole and kind in ("dynamic", "relaxation", "shift"):
             self._positive(frame, kind)
         return frame
+
+    def _measured(self, rows: list[Row], group: dict[str, Column]) -> list[Row]:
+        """Rows without those of failed points, as long as these are the fewer ones."""
+        columns = [one for key, one in group.items() if key not in ("temperature", "set")]
+        failed = [
+            (row, next(one for one in columns if is_missing(one.cell(row))))
+            for row in rows
+            if any(is_missing(one.cell(row)) for one in columns)
+        ]
+        if 2 * len(failed) >= len(rows):
+            return rows
+        self.failed += [
+            f"line {row.line} ('{cell}' in '{one.head.text.strip()}')"
+            if (cell := one.cell(row))
+            else f"line {row.line} (nothing in '{one.head.text.strip()}')"
+            for row, one in failed
+        ]
+        lost = {row.line for row, _ in failed}
+        return [row for row in rows if row.line not in lost]
 
     def _numbers(
         self, rows: Sequence[Row], column: Column, unit: str, name: str, kind: str
@@ -355,6 +490,16 @@ class Reader:
             base = group.get(key.removesuffix("_sigma"))
             if head.sigma and not found[column.index] and base:
                 found[column.index] = found[base.index]
+            if (
+                head.sigma
+                and base
+                and head.si == "1"
+                and size(found[column.index] or "1", "1") != size(found[base.index] or "1", "1")
+            ):
+                raise InputError(
+                    f"{place}: found '{head.unit}' as unit of '{head.text}', which may be a part "
+                    f"of '{base.head.text}' or of 1, expected the unit of '{base.head.text}'"
+                )
             missing = not found[column.index]
             if head.si == "K" and missing and not head.sigma:
                 self._kelvin(table, column, place)
@@ -407,7 +552,7 @@ class Reader:
         """Refuse temperatures without a unit that cannot be in kelvin."""
         values = [number(column.cell(row)) for row in table.rows()]
         warmest = np.nanmax(values)
-        if warmest < _COLDEST:
+        if warmest < COLDEST:
             raise InputError(
                 f"{place}: column '{column.head.text}': found at most {warmest:g} K, expected "
                 f"{column.head.text} [C] for degrees Celsius, or [K]"
@@ -416,13 +561,18 @@ class Reader:
     def _all_known(self, table: Table) -> None:
         """Refuse numbers of a table of impacts whose names are not known."""
         history, impact = quantities()
-        known = [*impact, *_IMPACTS, *_SETTINGS]
+        known = [*impact - COMPUTED, *_IMPACTS, *_SETTINGS]
         for i, head in enumerate(table.heads):
             if plain(head.text) in ASIDE or plain(head.text).rstrip(" .") in ASIDE:
                 continue
             cells = [row.cells[i] if i < len(row.cells) else "" for row in table.rows()]
             if not any(map(is_number, cells)) or not head.text.strip():
                 continue
+            if head.name in ("time", "run_time") and (
+                size(head.unit, "s") is None if head.unit else head.symbol
+            ):
+                # a time may be left out, a thickness t must not
+                raise self._unknown(table, head, known)
             if head.name and is_address(head.name) and head.name not in QUANTITIES:
                 if self.unit_of is not None:
                     unit = self.unit_of(head.name)
@@ -431,18 +581,24 @@ class Reader:
                     table.heads[i] = dataclasses.replace(head, si=quantities_of(head.unit)[0])
                 continue
             if head.flaw or head.name not in {*impact, *_IMPACTS, *_SETTINGS, "time", "run_time"}:
-                bare = plain(head.text.split("[")[0].split("(")[0]).replace(" ", "_")
-                units = quantities_of(head.unit) if head.unit else []
-                meant = next((_MEANT[one] for one in [*units, bare] if one in _MEANT), "")
-                raise InputError(
-                    f"{self.path}:{table.line}: found the column '{head.text}', expected one of "
-                    f"velocity, rebound_velocity, drop_height, rebound_height, bounce_time, cor, "
-                    f"cor_sphere, resilience, contact_time, max_force, temperature, radius, "
-                    f"diameter, mass, another column of the summary or an address, or "
-                    f"NAME_sigma for a standard error"
-                    f"{'' if meant else near(bare, known)}; or "
-                    f"{option('columns', {meant or 'NAME': head.text})}{', say' * bool(meant)}"
-                )
+                raise self._unknown(table, head, known)
+
+    def _unknown(self, table: Table, head: Head, known: Sequence[str]) -> InputError:
+        """A column of a table of impacts whose name is not known, and what it may be."""
+        text, may = head.text.strip(), hints.of_impacts(head, _known(table) - {head.name})
+        line = (
+            f"{self.path}:{table.line}: found the column '{text}', expected one of velocity, "
+            "rebound_velocity, drop_height, rebound_height, bounce_time, cor, cor_sphere, "
+            "resilience, contact_time, max_force, temperature, radius, diameter, mass, another "
+            "column of the summary or an address, or NAME_sigma for a standard error"
+        )
+        if head.name == "time":
+            line += f"; a time that is left out has its unit, {text} [s]" * (not head.unit)
+        elif not may:
+            line += near(plain(text.split("[")[0].split("(")[0]).replace(" ", "_"), known)
+        if not may:
+            return InputError(f"{line}; or {option('columns', {'NAME': text})}")
+        return InputError(f"{line}; {_say_which(text, may)}")
 
     def _dynamic(self, frame: pd.DataFrame, table: Table) -> pd.DataFrame:
         """Storage and loss moduli from what there is; refused if they contradict each other."""
@@ -566,27 +722,63 @@ class Reader:
             return InputError(f"{place}: '{flawed[0].text}': {flawed[0].flaw}")
         if table.flaw:
             return InputError(table.flaw)
+        names = _known(table)
         if not kind:
-            last = free[-1] if free else Head("HEAD")
-            could = _could_be(last, _known(table))
-            stress = " (a stress over the strain)" * could[0].endswith("_modulus")
+            creep = next((h.text.strip() for h in table.heads if _COMPLIANCE.search(h.text)), "")
+            if creep:
+                return InputError(f"{place}: found the compliance '{creep}', expected moduli"
+                                  + _of_compliance("frequency" in names))  # fmt: skip
+            could = [(head, may) for head in free if (may := _could_be(head, names))]
+            stress = " (a stress over the strain)"
+            if not could:
+                return InputError(
+                    f"{place}: found the columns {told}, none of which is a measured quantity that "
+                    f"is known, such as a relaxation modulus{stress}; {option('columns')} says "
+                    "which is what"
+                )
+            last, may = could[-1]
+            stress *= may[0].endswith("_modulus")
             return InputError(
                 f"{place}: found the columns {told}, none of which is a measured quantity that is "
-                f"known; if '{last.text.strip()}' is {' or '.join(could)}{stress}, say which: "
-                + option("columns", {could[0]: last.text.strip()})
+                f"known; {_say_which(last.text.strip(), may, stress)}"
             )
-        lacks = self._lacks(table, kind)
+        if {"frequency", "relaxation_modulus"} <= names:
+            # a modulus against frequency
+            text = next(h.text.strip() for h in table.heads if h.name == "relaxation_modulus")
+            own = names - {"relaxation_modulus"}
+            may = [name for name in _MODULI if not self._lacks(own | {name}, "dynamic")]
+            return InputError(
+                f"{place}: found '{text}' against frequency, expected storage and loss modulus, or "
+                "one of them or the complex modulus with the loss tangent; "
+                + _say_which(text, may or ["storage_modulus", "complex_modulus"])
+            )
+        lacks = self._lacks(names, kind)
         words = " and of the ".join(name.replace("_", " ") for name in lacks)
-        names = " and ".join(QUANTITIES[name].example for name in lacks)
-        si = QUANTITIES[lacks[0]].unit
-        fit = [head.text for head in free if head.unit and size(head.unit, si)]
-        one = fit[-1].strip() if fit else "HEAD"
-        more = "; a temperature sweep at one frequency tells no shifts, those at several do"
-        more *= "frequency" in lacks and "temperature" in _known(table)
-        return InputError(
+        line = (
             f"{place}: found {told}, but no column of the {words}, expected one named as "
-            f"{names}, or {option('columns', {lacks[0]: one})}{more}"
+            + " and ".join(QUANTITIES[name].example for name in lacks)
         )
+        si = QUANTITIES[lacks[0]].unit
+        may = [lacks[0]]
+        if lacks[0] in _MODULI:
+            may = [one for one in _MODULI if one not in names
+                   and (len(lacks) > 1 or not self._lacks(names | {one}, kind))]  # fmt: skip
+        fit = [
+            (head.text.strip(), found)
+            for head in free
+            if head.unit and size(head.unit, si) and (found := hints.of_moduli(head, may, names))
+        ]
+        # one whose name tells that it is what is missing, before others of its unit
+        fit = [one for one in fit if one[1] == [lacks[0]]] or fit
+        if len(fit) == 1:
+            line += f"; {_say_which(*fit[0])}"
+        elif fit:
+            line += f"; {option('columns')} says which of " + ", ".join(
+                f"'{one}'" for one, _ in fit
+            )
+        if "frequency" in lacks and "temperature" in names:
+            line += "; a temperature sweep at one frequency tells no shifts, those at several do"
+        return InputError(line)
 
     def shear(self) -> bool | None:
         """Whether the moduli are shear moduli, None: the names do not say."""
@@ -610,10 +802,18 @@ class Reader:
         ]
         n = len(frame)
         line = f"{self.path}: {n} point{'s' * (n > 1)}: {', '.join(parts)}"
-        if "set" in frame:
-            line += f"; {frame['set'].nunique()} sets"
+        if self.choice.where:
+            line += f"; with {' and '.join(map(str, self.choice.where))}"
+            line += f" ({self.selected})" if self.selected else ""
+        if sets := _sets(frame):
+            line += f"; {sets}"
         if self.comma:
             line += "; with decimal commas"
+        if self.failed:
+            n = len(self.failed)
+            more = f" and {n - 4} more" if n > 4 else ""
+            line += f"; {n} failed point{'s' * (n > 1)} left out: "
+            line += f"{', '.join(self.failed[:4])}{more}"
         if self.left:
             more = f" and {len(self.left) - 8} more" if len(self.left) > 8 else ""
             line += f"; not taken: {', '.join(self.left[:8])}{more}"
@@ -626,6 +826,64 @@ def refuse_all_but_moduli(kind: str | None, path: str) -> None:
         found = f"found {ALIKE[kind]}, " if kind in ALIKE else ""
         test = "; of a relaxation test F/(A strain) is one, with the area A" * (kind == "record")
         raise InputError(f"{path}: {found}expected moduli against time or frequency{test}")
+
+
+def _of_compliance(dynamic: bool) -> str:
+    """How compliances become moduli, for a message."""
+    if dynamic:
+        return ": E' = J'/(J'^2 + J''^2) and E'' = J''/(J'^2 + J''^2)"
+    return (
+        ": E(t) = sin(pi n)/(pi n J(t)) with the slope n = d ln J/d ln t, which is exact for a "
+        "power law"
+    )
+
+
+def _sets(frame: pd.DataFrame) -> str:
+    """The sets of points in words: how many points each has, and its temperature."""
+    own = frame["set"].to_numpy() if "set" in frame else np.zeros(len(frame))
+    begins = np.diff(own) != 0
+    kelvin = (
+        frame["temperature"].to_numpy() if "temperature" in frame else np.full(len(own), np.nan)
+    )
+    if "shift_factor" in frame:
+        # a temperature each
+        kelvin = np.full(len(own), np.nan)
+    elif {"frequency", "time"} & set(frame):
+        begins |= np.abs(np.diff(kelvin)) > SAME_TEMPERATURE
+    groups = np.split(np.arange(len(own)), np.flatnonzero(begins) + 1)
+    counts = [len(group) for group in groups]
+    at = [_range(kelvin[group]) for group in groups]
+    if len(groups) == 1:
+        return at[0].strip()
+    if len(groups) > MOST_SETS:
+        return (f"{len(groups)} sets of {min(counts)} to {max(counts)} points"
+                f"{_range(kelvin)}")  # fmt: skip
+    told = [f"{n}{place}" for n, place in zip(counts, at, strict=True)]
+    points = f"{counts[0]} point{'s' * (counts[0] > 1)}{at[0]}"
+    return f"{len(groups)} sets: {', '.join([points, *told[1:]])}"
+
+
+def _range(kelvin: Floats) -> str:
+    """Temperatures of points in words, empty if there are none."""
+    known = kelvin[np.isfinite(kelvin)]
+    if not known.size:
+        return ""
+    if np.ptp(known) < SAME_TEMPERATURE:
+        return f" at {_celsius(known.mean())}"
+    return f" at {_celsius(known.min()).removesuffix(' C')} to {_celsius(known.max())}"
+
+
+def _celsius(kelvin: float) -> str:
+    """A temperature in degrees Celsius."""
+    return f"{round(float(kelvin) - ZERO_C, 2) + 0.0:g} C"
+
+
+def _may_end_before(head: Head, index: int, rows: Sequence[Row]) -> bool:
+    """Whether rows may end before a column, the last one: it holds no numbers, but remarks."""
+    if not head.text.strip() or plain(head.text) in REMARKS:
+        return True
+    cells = [row.cells[index] for row in rows if index < len(row.cells)]
+    return not any(map(is_number, cells)) and not all(map(is_missing, cells))
 
 
 def _known(table: Table) -> set[str]:
@@ -644,13 +902,22 @@ def _known(table: Table) -> set[str]:
 def _could_be(head: Head, names: set[str]) -> list[str]:
     """Quantities that a column may be by its unit, the likeliest one first."""
     told = quantities_of(head.unit) if head.unit else []
-    found = [one.name for one in QUANTITIES.values() if one.unit in told and one.name not in names]
+    found = [one.name for one in QUANTITIES.values() if one.unit in told]
     found = [name for name in found if name not in ("run_time", "event_time", "angular_frequency")]
     if not found:
         found = ["relaxation_modulus", "storage_modulus", "force", "cor"]
-    if "frequency" in names and "relaxation_modulus" in found:
-        found.remove("relaxation_modulus")
-    return found[:4]
+    if "frequency" in names:
+        found = [name for name in found if name != "relaxation_modulus"]
+    elif "time" in names or "run_time" in names:
+        found = [name for name in found if name not in _DYNAMIC]
+    return hints.of_moduli(head, found, names)[:4]
+
+
+def _say_which(text: str, may: Sequence[str], more: str = "") -> str:
+    """The option that says what a column is, by what it may be."""
+    which = "which" if len(may) > 1 else "so"
+    said = option("columns", {may[0]: text})
+    return f"if '{text}' is {' or '.join(may)}{more}, say {which}: {said}"
 
 
 def _first_comma(rows: Sequence[Row], column: Column) -> str:

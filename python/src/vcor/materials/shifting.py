@@ -12,7 +12,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +34,11 @@ FOLLOWS = 2.0
 AGREE = 3.0
 #: Relative standard error from which on a constant of a law is not determined
 UNDETERMINED = 1 / 3
+#: Step of 1/C2 for its slope, in parts of the reciprocal of the span of the temperatures: the
+#: curvature that it adds is this part of the shift, far above rounding errors
+STEP_OF_WLF = 1e-4
+#: Logarithm of a factor that leaves nothing of a shift in double precision
+NO_SHIFT = 50.0
 #: Least change of ln a_T between temperatures, far below what data resolve
 NO_STEP = 1e-6
 #: Reduction of the sum of squares, in variances, from which on moduli follow the temperature
@@ -257,6 +262,29 @@ def log_shift(values: Mapping[str, float], t: Floats, reference: float) -> Float
     return found
 
 
+def _errors_of_wlf(
+    misfit: Callable[[Floats], Floats], x: Floats, span: float
+) -> tuple[Floats, float]:
+    """Relative errors of C1 and C2 and of their ratio, at their logarithms x, for data of error 1.
+
+    In k = C1/C2 and u = 1/C2 the law is log10 a_T = -k (T - T0)/(1 + u (T - T0)). Both slopes stay
+    finite where the best C2 is infinite, u = 0: shift factors that are straight, or bend the other
+    way. In C1 and C2 they vanish there, and a covariance is one of rounding errors.
+    """
+    k, u = x[0] - x[1], math.exp(-x[1])
+    # the slope against ln k is exact, as the law is proportional to k
+    at = [
+        misfit(np.array([k - math.log(one), -math.log(one)])) for one in (u, u + STEP_OF_WLF / span)
+    ]
+    zero = misfit(np.array([x[0] - 50.0, x[1]]))
+    slopes = np.stack([at[0] - zero, (at[1] - at[0]) * span / STEP_OF_WLF], axis=1)
+    covariance = np.linalg.inv(slopes.T @ slopes)
+    # ln C1 = ln k - ln u and ln C2 = -ln u
+    turn = np.array([[1.0, -1.0 / u], [0.0, -1.0 / u]])
+    errors: Floats = np.sqrt(np.diag(turn @ covariance @ turn.T))
+    return errors, math.sqrt(covariance[0, 0])
+
+
 def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: float) -> list[Law]:
     """Laws by least squares of the steps of log10 a_T, whose errors are independent.
 
@@ -282,15 +310,15 @@ def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: floa
         best = least_squares(misfit, begin, max_nfev=500)
         values = np.exp(best.x)
         square = 2 * best.cost / max(int(seen.sum()) - len(start), 1)
-        covariance = np.linalg.pinv(best.jac.T @ best.jac) * max(1.0, square)
-        constants, deviations = (
-            dict(zip(start, one.tolist(), strict=True))
-            for one in (values, values * np.sqrt(np.diag(covariance)))
-        )
         rms = float(np.sqrt(np.mean((misfit(best.x) * errors[seen]) ** 2)))
         ratio = (math.nan, math.nan)
         if name == "WLF":
-            spread = covariance[0, 0] + covariance[1, 1] - 2 * covariance[0, 1]
-            ratio = values[0] / values[1], values[0] / values[1] * math.sqrt(max(spread, 0.0))
+            relative, slope = _errors_of_wlf(misfit, best.x, float(np.ptp(temperatures)))
+            slope *= math.sqrt(max(1.0, square))
+            ratio = values[0] / values[1], values[0] / values[1] * slope
+        else:
+            relative = np.sqrt(np.diag(np.linalg.pinv(best.jac.T @ best.jac)))
+        deviations = dict(zip(start, values * relative * math.sqrt(max(1.0, square)), strict=True))
+        constants = dict(zip(start, values.tolist(), strict=True))
         found.append(Law(name, constants, deviations, rms, math.sqrt(square), ratio))
     return found

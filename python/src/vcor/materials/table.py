@@ -13,7 +13,6 @@ from .. import _command
 from .._library import InputError, UsageError, within
 from .._text import command, option
 from .data import (
-    SAME_TEMPERATURE,
     Columns,
     Units,
     add_data_options,
@@ -23,7 +22,8 @@ from .data import (
     read_data,
     tensile,
 )
-from .reader import ALIKE, refuse_all_but_moduli
+from .reader import ALIKE, SAME_TEMPERATURE, refuse_all_but_moduli
+from .select import Where
 
 
 def table(
@@ -33,6 +33,7 @@ def table(
     *,
     poisson_ratio: float | None = None,
     temperature: float | None = None,
+    where: Where = None,
 ) -> tuple[str, str]:
     """Text of a table of relaxation moduli or shift factors, and a line on what was taken.
 
@@ -46,8 +47,10 @@ def table(
         By which shear moduli become tensile ones; without it they stay what they are.
     temperature
         Which curve [K], where the data have several.
+    where
+        Which rows are taken, as for `read_data`.
     """
-    data = read_data(path, columns, units)
+    data = read_data(path, columns, units, where=where)
     if data.attrs["kind"] == "shift":
         data = data.sort_values("temperature")
         if (np.diff(data.temperature) <= 0).any():
@@ -75,7 +78,12 @@ def table(
                          "one")  # fmt: skip
     (one,) = found
     name = "shear_relaxation_modulus" if data.attrs["shear"] else "relaxation_modulus"
-    rows = zip(one.time, one.relaxation_modulus, strict=True)
+    times, moduli = one.time, one.relaxation_modulus
+    if one.attrs["runs"] > 1:
+        # a table has each time once: the geometric mean of replicates
+        means = np.log(moduli).groupby(times.to_numpy()).mean()
+        times, moduli = means.index, np.exp(means)
+    rows = zip(times, moduli, strict=True)
     return _text(f"time [s],{name} [Pa]", rows), data.attrs["taken"]
 
 
@@ -107,6 +115,7 @@ def _work(options: argparse.Namespace) -> None:
         options.data, columns_option(options.columns), options.units,
         poisson_ratio=options.poisson_ratio,
         temperature=None if at is None else kelvin(at, "--temperature"),
+        where=options.where,
     )  # fmt: skip
     if not options.quiet:
         sys.stderr.write(f"vcor: note: {taken}\n")

@@ -6,25 +6,21 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from .. import _library
 from .._library import InputError, UsageError
 from .._text import option
 from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
+from .labels import UNLABELLED, Label, read_label
 from .names import QUANTITIES, Head, canonical, plain, plain_units, read_head
-from .units import ZERO_C, plain_unit, size
+from .select import Where, conditions
+from .units import plain_unit, size
 
-_DEGREES = r"([-+]?\d+(?:[.,]\d+)?)\s*(?:°|º|deg\.?)?\s*(C|K)\b"
-_TITLE = re.compile(
-    r"\W*(?:set |sample |soll)?(?:T|temp\.?|temperature|temperatur|température|temperatura|温度)?"
-    rf"\W*{_DEGREES}\W*",
-    re.IGNORECASE,
-)
-_STEP = re.compile(
-    r"\W*(step|sweep|interval|frequency sweep|schritt|abschnitt|sheet|set|stress relax"
-    r"|relaxation|étape|paso|block|isotherm)",
-    re.IGNORECASE,
-)
+#: Heads that a message shows
+MOST_HEADS = 12
 
 
 @dataclass
@@ -34,8 +30,8 @@ class Table:
     #: Line of the head, 0: there is no head
     line: int
     heads: list[Head]
-    #: Temperature in a title [K], nan: none, and rows, for each part below a title
-    parts: list[tuple[float, list[Row]]]
+    #: Temperature in a title, and rows, for each part below a title
+    parts: list[tuple[Label, list[Row]]]
     #: What is wrong with it, if it is used
     flaw: str = ""
 
@@ -76,12 +72,16 @@ class Choice:
         columns: Mapping[str, str | int] | Sequence[str] | None,
         units: Mapping[str, str] | Sequence[str] | str | None,
         files: int = 1,
+        where: Where = None,
     ) -> None:
+        #: Which rows are taken
+        self.where = conditions(where)
         #: Whether what one file lacks may stand in another
         self.shared = files > 1
         #: Texts of `columns` that a file had, and heads of the files
         self._seen: set[str] = set()
         self._heads: dict[str, None] = {}
+        columns, units = _texts(columns, "columns"), _texts(units, "units")
         if isinstance(columns, str):
             columns = columns.split(",")
         #: Names of the columns of a file without a head, in their order
@@ -144,13 +144,73 @@ class Choice:
             or (text.isdigit() and 0 < int(text) <= len(table.heads))
         }
 
+    def select(self, grid: Grid) -> Grid:
+        """Rows of the sheets that are taken."""
+        for one in self.where:
+            if plain(one.name) != "sheet" or not any(row.sheet for row in grid.rows):
+                continue
+            taken, rows = True, []
+            for row in grid.rows:
+                taken = one.takes(row.text) if row.sheet else taken
+                if taken:
+                    rows.append(row)
+            if not one.met:
+                raise one.refusal(f"{grid.path} has")
+            grid = replace(grid, rows=rows)
+        return grid
+
+    def filter(self, table: Table) -> bool:
+        """Leave the rows of a table that are taken; whether there are any."""
+        for one in self.where:
+            at = [i for i, head in enumerate(table.heads) if _matches(head, one.name)]
+            if not at and plain(one.name) == "line":
+                table.parts = [
+                    (title, [row for row in rows if one.takes(str(row.line))])
+                    for title, rows in table.parts
+                ]
+                continue
+            if not at and one.name.isdigit() and 0 < int(one.name) <= len(table.heads):
+                at = [int(one.name) - 1]
+            if len(at) != 1 or plain(one.name) == "temperature":
+                continue
+            column = Column(at[0], table.heads[at[0]])
+            table.parts = [
+                (title, [row for row in rows if one.takes(column.cell(row))])
+                for title, rows in table.parts
+            ]
+        return any(rows for _, rows in table.parts)
+
     def refuse_unseen(self, where: str) -> None:
+        """Refuse a text of `columns` that no file had, and a condition that took no row."""
+        for one in self.where:
+            if not one.met:
+                raise one.refusal(where)
+        self.refuse_unread(where)
+
+    def refuse_unread(self, where: str) -> None:
         """Refuse a text of `columns` that no file had."""
         for text, _ in self.columns.values():
             if text not in self._seen:
-                known = ", ".join(f"'{one}'" for one in self._heads)
+                known = ", ".join(f"'{one}'" for one in [*self._heads][:MOST_HEADS])
+                known += ", ..." * (len(self._heads) > MOST_HEADS)
                 raise UsageError(f"{option('columns')}: {where} no column '{text}', expected one "
                                  f"of {known}")  # fmt: skip
+
+
+def _texts(given: Any, name: str) -> Any:
+    """What a user says of columns: a text, texts, or texts by their names; else refused."""
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
+    if given is None or isinstance(given, str):
+        return given
+    words = given
+    if isinstance(given, Mapping):
+        # a column may be a number
+        words = [*given, *(str(one) if name == "columns" else one for one in given.values())]
+    if not isinstance(words, Sequence) or not all(isinstance(one, str) for one in words):
+        raise UsageError(f"{option(name)}: found {given!r:.60}, expected texts, or texts by the "
+                         "names of quantities")  # fmt: skip
+    return given
 
 
 def _named(key: str) -> tuple[str, float]:
@@ -183,26 +243,31 @@ def tables_of(grid: Grid, choice: Choice) -> list[Table]:
     gap: list[Row] = []
     stray: list[Row] = []
     while start < len(rows):
-        if rows[start].remark or not rows[start].numbers():
+        if not _is_data(rows[start]):
             gap.append(rows[start])
             start += 1
             continue
         end = start
-        while end < len(rows) and (rows[end].numbers() or rows[end].remark):
+        while end < len(rows) and _is_data(rows[end]):
             end += 1
-        run = [row for row in rows[start:end] if not row.remark]
+        run = rows[start:end]
         table = _table(grid, gap, run, hints, choice)
         title = _titled(gap)
         if table:
             table.parts = [(title, run)]
             found.append(table)
             stray = []
-        elif found and math.isfinite(title) and not found[-1].flaw:
+        elif found and title and title.alone:
             found[-1].parts.append((title, run))
-        elif len(run) == 1 and any(math.isfinite(tag) for tag in _tags(run[0], len(run[0].cells))):
+            found[-1].flaw = found[-1].flaw or _too_wide(grid, run, found[-1])
+        elif len(run) == 1 and _has_tags(grid, run[0]):
             # temperatures above the names of columns
             gap, start = [*gap, *run], end
             continue
+        elif found and all(row.remark and not row.sheet for row in gap):
+            # remarks among the numbers of a table
+            found[-1].parts[-1][1].extend(run)
+            found[-1].flaw = found[-1].flaw or _too_wide(grid, run, found[-1])
         elif found:
             stray += [row for row in run if _fits(row, found[-1])]
             if len(stray) > 1 or (stray and end == len(rows)):
@@ -219,6 +284,33 @@ def tables_of(grid: Grid, choice: Choice) -> list[Table]:
     return found
 
 
+def _is_data(row: Row) -> bool:
+    """Whether a line has numbers that are data, not a temperature with its unit."""
+    numbers, filled = 0 if row.remark else row.numbers(), row.filled()
+    # a label has two numbers at most: its own, and one of a step
+    plenty = numbers > 2 and 2 * numbers > filled
+    return plenty or numbers == filled > 0 or (numbers > 0 and not _label(row))
+
+
+def _label(row: Row, *, among_others: bool = False) -> Label:
+    """The temperature that a line states."""
+    text = " ".join(filter(None, row.cells)) if row.cells else row.text
+    found = read_label(text, among_others=among_others)
+    return replace(found, line=row.line) if found else found
+
+
+def _too_wide(grid: Grid, run: Sequence[Row], table: Table) -> str:
+    """What is wrong if rows have numbers beyond the names of a table."""
+    names = len(table.heads)
+    width = max((i + 1 for row in run for i, c in enumerate(row.cells) if is_number(c)), default=0)
+    if width <= names:
+        return ""
+    flaw = f"{grid.path}:{table.line}: found {width} columns, but the head has {names} names"
+    if grid.separator == ",":
+        flaw += "; expected semicolons or tabs between numbers with decimal commas"
+    return flaw
+
+
 def _table(
     grid: Grid, gap: list[Row], run: list[Row], hints: Mapping[str, str], choice: Choice
 ) -> Table | None:
@@ -226,17 +318,18 @@ def _table(
     width = max(i for row in run for i, cell in enumerate(row.cells) if cell) + 1
     above = [row for row in gap if row.remark or any(row.cells)]
     units: list[str] | None = None
+    units_line, flaw = 0, ""
     while above:
         row = above.pop()
-        if not row.remark and _TITLE.fullmatch(" ".join(filter(None, row.cells))):
+        if _label(row):
             continue
-        texts = _cells(grid, row, width)
+        texts = [row.text] if row.sheet and width == 1 else _cells(grid, row, width)
         if texts is None:
             if row.remark:
                 continue
             texts = row.cells
         if units is None and _is_units(texts, choice):
-            units = texts
+            units, units_line = texts, row.line
             continue
         heads = [read_head(text) for text in texts]
         said = any(_matches(head, text) for head in heads for text, _ in choice.columns.values())
@@ -244,30 +337,45 @@ def _table(
             if row.remark and units is None:
                 continue
             # a line of text: it may be a head whose names are not known
-            if sum(map(bool, texts)) < 2 and width > 1:
+            if sum(map(bool, texts)) < min(width, 2 if units else width):
                 return None
         if units:
+            flaw = _shifted(grid, units_line, units, heads)
             heads = [
                 _with_unit(head, units[i] if i < len(units) else "") for i, head in enumerate(heads)
             ]
         heads = [_with_unit(head, hints.get(plain(head.text), "")) for head in heads]
-        tags = _tags(above[-1] if above else None, len(heads))
+        tags, other = _tags(grid, above[-1] if above else None, len(heads))
+        if above and above[-1].cells and _label(above[-1]):
+            # the title of all columns, unless there are named ones before it
+            first = next(i for i, cell in enumerate(above[-1].cells) if cell)
+            if not any(head.name for head in heads[:first]):
+                tags, other = [math.nan] * len(heads), ""
         heads = [
             head if math.isfinite(head.temperature) else replace(head, temperature=tag)
             for head, tag in zip(heads, tags, strict=True)
         ]
         table = Table(row.line, heads, [])
-        if len(heads) < width and any(
-            is_number(cell) for one in run for cell in one.cells[len(heads) :]
-        ):
-            table.flaw = (
-                f"{grid.path}:{row.line}: found {width} columns, but the head has "
-                f"{len(heads)} names"
-            )
-            if grid.separator == ",":
-                table.flaw += "; expected semicolons or tabs between numbers with decimal commas"
+        doubt = next((head.doubt for head in heads if head.name and head.doubt), "")
+        doubt = doubt and f"{grid.path}:{row.line}: {doubt}"
+        table.flaw = _too_wide(grid, run, table) or flaw or other or doubt
         return table
     return None
+
+
+def _shifted(grid: Grid, line: int, units: Sequence[str], heads: Sequence[Head]) -> str:
+    """What is wrong with a line of units that has fewer cells than the names, or more."""
+    need, n = len(heads), len(units)
+    if grid.separator == "xlsx":
+        return ""
+    while need and heads[need - 1].si in ("", "1"):
+        need -= 1
+    if need <= n and not any(cell.strip() for cell in units[len(heads) :]):
+        return ""
+    return (
+        f"{grid.path}:{line}: found {n} units below {len(heads)} names, expected an empty cell "
+        "or [-] where there is no unit"
+    )
 
 
 def _nameless(grid: Grid, run: list[Row], choice: Choice) -> Table:
@@ -283,7 +391,7 @@ def _nameless(grid: Grid, run: list[Row], choice: Choice) -> Table:
         name, base = _named(text) if text.strip() else ("", 0.0)
         head = read_head(name) if name else Head("")
         heads.append(replace(head, text=f"column {i + 1}", base=base))
-    return Table(0, heads, [(math.nan, run)])
+    return Table(0, heads, [(UNLABELLED, run)])
 
 
 def _cells(grid: Grid, row: Row, width: int) -> list[str] | None:
@@ -338,37 +446,40 @@ def _hints(grid: Grid) -> dict[str, str]:
     return found
 
 
-def _kelvin(value: str, unit: str) -> float:
-    return float(value.replace(",", ".")) + (ZERO_C if unit.upper() == "C" else 0.0)
+def _has_tags(grid: Grid, row: Row) -> bool:
+    """Whether a line has temperatures of columns."""
+    return any(map(math.isfinite, _tags(grid, row, len(row.cells))[0]))
 
 
-def _titled(gap: list[Row]) -> float:
-    """Temperature in the lines above a table [K], nan if there is none."""
-    for row in reversed(gap):
-        text = " ".join(filter(None, row.cells)) if row.cells else row.text
-        text = re.sub(r"[;,\t]+(?!\d)", " ", text)
-        if found := _TITLE.fullmatch(text):
-            return _kelvin(found[1], found[2])
-        many = re.findall(_DEGREES, text)
-        if _STEP.match(text) and len(many) == 1:
-            return _kelvin(*many[0])
-    return math.nan
+def _titled(gap: list[Row]) -> Label:
+    """Temperature in the lines above a table: the nearest one, with a unit if one has it."""
+    found = [label for row in reversed(gap) if (label := _label(row, among_others=True))]
+    found.sort(key=lambda one: (not one.alone, not one.has_unit))
+    return found[0] if found else UNLABELLED
 
 
-def _tags(row: Row | None, width: int) -> list[float]:
-    """Temperatures of columns by the line above their names, each up to the next one."""
+def _tags(grid: Grid, row: Row | None, width: int) -> tuple[list[float], str]:
+    """Temperatures [K] of columns by the line above their names, and what is wrong with them.
+
+    Each goes up to the next one; nan: there is none.
+    """
     found = [math.nan] * width
     if row is None or row.remark:
-        return found
-    first = read_head(row.cells[0]) if row.cells else Head("")
+        return found, ""
+    first, flaw = read_head(row.cells[0]) if row.cells else Head(""), ""
+    across = first.name == "temperature" and size(first.unit, "K")
     for i, cell in enumerate(row.cells[:width]):
-        if told := _TITLE.fullmatch(cell):
-            found[i] = _kelvin(told[1], told[2])
-        elif first.name == "temperature" and is_number(cell) and size(first.unit, "K"):
-            found[i] = _kelvin(cell, plain_unit(first.unit))
+        if told := read_label(cell):
+            found[i] = told.kelvin
+            flaw = flaw or (told.flaw and f"{grid.path}:{row.line}: {told.flaw}")
+        elif across and is_number(cell):
+            factor, offset = across
+            found[i] = number(cell) * factor + offset
         elif i and not cell:
             found[i] = found[i - 1]
-    return found
+        elif i and across:
+            flaw = flaw or f"{grid.path}:{row.line}: found '{cell[:40]}', expected a temperature"
+    return found, flaw
 
 
 def _fits(row: Row, table: Table) -> bool:
@@ -397,6 +508,12 @@ def groups_of(table: Table, path: str, wanted: set[str]) -> list[Group]:
         for key, some in by_key.items():
             own = [one for one in some if one.head.temperature == tag]
             common = [one for one in some if math.isnan(one.head.temperature)]
+            if own and common:
+                raise InputError(
+                    f"{path}:{table.line}: found the column '{common[0].head.text}' (column "
+                    f"{common[0].index + 1}) without a temperature next to '{own[0].head.text}' "
+                    f"(column {own[0].index + 1}) with one, expected it for both"
+                )
             if own or common:
                 found[key] = _one(table, path, key, own or common)
         groups.append((tag, found))
@@ -416,7 +533,7 @@ def _one(table: Table, path: str, key: str, columns: list[Column]) -> Column:
                 f"{path}:{table.line}: found two columns of {name.replace('_', ' ')} with "
                 f"different numbers, '{first.head.text}' (column {first.index + 1}) and "
                 f"'{second.head.text}' "
-                f"(column {second.index + 1}), expected one, or "
+                f"(column {second.index + 1}), expected one; say which, such as "
                 + option("columns", {key: _stated(table, second)})
             )
     return best
@@ -440,11 +557,13 @@ def _same(table: Table, one: Column, other: Column) -> bool:
         cells = one.cell(row), other.cell(row)
         if is_missing(cells[0]) and is_missing(cells[1]):
             continue
-        if not all(map(is_number, cells)):
+        if not all(is_number(cell) and math.isfinite(number(cell)) for cell in cells):
             return False
         values = [number(c) * s[0] + s[1] for c, s in zip(cells, scales, strict=True)]
-        slack = max(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
-        if abs(values[0] - values[1]) > 1.01 * slack + 1e-12 * abs(values[0]):
+        # each is rounded for itself
+        slack = sum(resolution(c) * s[0] for c, s in zip(cells, scales, strict=True))
+        # at the sum itself only ties are rounded apart, such as 2.5 to 2 and 3
+        if abs(values[0] - values[1]) > max((1 - 1e-9) * slack, 1e-12 * abs(values[0])):
             return False
     return True
 

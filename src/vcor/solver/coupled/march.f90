@@ -289,6 +289,8 @@ contains
       integer :: round, i, last, pivots(kernel%mesh%hats), info
       logical :: pushes
 
+      ! no spring is known to be on its side before the first solution, which may fail
+      last = size(self%gap)
       do round = 1, most
          if (any(self%pushes)) then
             call gather(kernel, merge(self%gap, 0.0_wp, self%pushes), y)

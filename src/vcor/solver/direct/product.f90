@@ -110,6 +110,12 @@ contains
          end if
 
          level = 0
+         ! the newest of three runs moves the others on, of which the first ones are none
+         cor = 0.0_wp
+         cor_sphere = 0.0_wp
+         contact_time = 0.0_wp
+         depth = 0.0_wp
+         force = 0.0_wp
          span = 5.0_wp*impact%time_scale()
          if (end_time > 0.0_wp) span = min(span, end_time)
          room = nint(span/dt)

@@ -1,0 +1,193 @@
+"""What results do not know of themselves: their validity, and data that do not cover an impact.
+
+The library judges both; what it says travels with each result, as warnings and as attributes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextvars import ContextVar
+from ctypes import byref, c_void_p
+from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _library
+from ._library import DataRangeWarning, Error, Floats, ValidityWarning, call
+
+if TYPE_CHECKING:
+    from .case import Case
+
+#: Columns that the remarks are made from
+_JUDGED = ("validity", "validity_cause", "status", "contact_time", "cor")
+#: Keys that change the duration of a contact, and neither a material nor what it is made of
+ONLY_FASTER = ("impact.velocity", "impact.drop_height")
+
+#: Warnings that are not given
+_silent: ContextVar[tuple[type[Warning], ...]] = ContextVar("silent", default=())
+
+
+class Numbers(dict[str, float | str]):
+    """The numbers of an impact by their names, and what they do not know of themselves.
+
+    Attributes
+    ----------
+    validity
+        "good", or the level with the measure that decides, as "outside (contact_ratio)".
+    beyond_data
+        Lines about data of materials that do not cover the impact; empty if they do.
+    """
+
+    validity: str = ""
+    beyond_data: str = ""
+
+
+class _Examined(NamedTuple):
+    """Impacts for which the library has been asked: those between two contact times."""
+
+    #: Values of the points but for those of `ONLY_FASTER`
+    point: tuple[tuple[str, float], ...]
+    shortest: float
+    longest: float
+    #: What it said; None if no material has data of a known range
+    lines: str | None
+
+
+_examined: WeakKeyDictionary[Case, _Examined] = WeakKeyDictionary()
+
+
+def forget(case: Case) -> None:
+    """Forget what has been examined: a value of the case has changed."""
+    _examined.pop(case, None)
+
+
+@contextlib.contextmanager
+def unwarned(*kinds: type[Warning]) -> Iterator[None]:
+    """Give no warnings of these kinds, or of both, of results that are parts of another one."""
+    token = _silent.set(kinds or (ValidityWarning, DataRangeWarning))
+    try:
+        yield
+    finally:
+        _silent.reset(token)
+
+
+def with_judged(names: Sequence[str]) -> list[str]:
+    """Names of columns, and after them those that the remarks are made from."""
+    return [*names, *_JUDGED]
+
+
+def validity_of(levels: ArrayLike, causes: ArrayLike) -> str:
+    """How many points are outside and caution, and by which measures.
+
+    Parameters
+    ----------
+    levels, causes
+        The columns `validity` and `validity_cause`, of shape (points,).
+    """
+    level, cause = np.asarray(levels).ravel(), np.asarray(causes).ravel()
+    parts = []
+    # the worst first; good and none need no remark
+    for word in reversed(_library.columns(0)["validity"].labels.split()):
+        found = level == word
+        if word in ("good", "none") or not found.any():
+            continue
+        at = f"{found.sum()} of {len(level)} points " if len(level) > 1 else ""
+        measures = dict.fromkeys(cause[found].tolist())
+        parts.append(f"{at}{word} ({', '.join(measures)})")
+    return ", ".join(parts) or ("good" if (level == "good").any() else "none")
+
+
+def about(
+    case: Case, addresses: Sequence[str], table: Floats, results: Floats, level: int = 3
+) -> dict[str, str]:
+    """What points do not know of themselves; warns of it.
+
+    Parameters
+    ----------
+    case, addresses, table
+        The case and its points, of shape (points, addresses).
+    results
+        Their columns, the last of which are those of `with_judged`.
+    level
+        Frames from here to the caller that is warned.
+
+    Returns
+    -------
+    dict
+        Attributes: `validity`, and `beyond_data` where there is anything to say.
+    """
+    columns = _library.columns(0)
+    levels, causes = (columns[name].values(results[:, i - len(_JUDGED)])
+                      for i, name in enumerate(_JUDGED[:2]))  # fmt: skip
+    said = {"validity": validity_of(levels, causes)}
+    if lines := _beyond_data(case, addresses, table, *results[:, -3:].T):
+        said["beyond_data"] = lines
+    if said["validity"] not in ("good", "none") and ValidityWarning not in _silent.get():
+        warnings.warn(
+            f"{case.name}: validity: {said['validity']}", ValidityWarning, stacklevel=level
+        )
+    for line in lines.splitlines():
+        warnings.warn(line, DataRangeWarning, stacklevel=level)
+    return said
+
+
+def about_history(case: Case) -> dict[str, str]:
+    """What the impact of a history does not know of itself; warns of it."""
+    with contextlib.suppress(Error):
+        found, _ = case._solve([], np.empty((1, 0)), _JUDGED, 1)
+        return about(case, [], np.empty((1, 0)), found, level=4)
+    # it sticks, or does not separate
+    return {"validity": "none"}
+
+
+def _beyond_data(
+    case: Case,
+    addresses: Sequence[str],
+    table: Floats,
+    status: Floats,
+    contact_time: Floats,
+    cor: Floats,
+) -> str:
+    """Lines about data that do not cover the points; empty if they do.
+
+    One impact after another asks only if its contact is shorter or longer than those before: the
+    library examines the shortest and the longest one of many.
+    """
+    # what nobody hears takes two solutions
+    if DataRangeWarning in _silent.get():
+        return ""
+    known = np.isfinite(contact_time)
+    shortest = float(np.min(contact_time, where=known, initial=np.inf))
+    longest = float(np.max(contact_time, where=known, initial=-np.inf))
+    point: tuple[Any, ...] = ()
+    if len(table) == 1:
+        point = tuple((address, value) for address, value in zip(addresses, table[0], strict=True)
+                      if address not in ONLY_FASTER)  # fmt: skip
+        last = _examined.get(case)
+        if last and (last.lines is None or last.point == point
+                     and last.shortest <= shortest and longest <= last.longest):  # fmt: skip
+            return (last.lines or "").strip("\n")
+    text = c_void_p()
+    with contextlib.suppress(Error):
+        call("vcor_beyond_data", case._pointer, len(addresses),
+             _library.texts(tuple(addresses)), len(table), np.ascontiguousarray(table),
+             *map(np.ascontiguousarray, (status, contact_time, cor)), byref(text))  # fmt: skip
+    lines = _library.take_text(text)
+    if len(table) == 1:
+        last = _examined.get(case)
+        if last and last.point == point:
+            shortest, longest = min(shortest, last.shortest), max(longest, last.longest)
+        _examined[case] = _Examined(point, shortest, longest, lines)
+    return (lines or "").strip("\n")
+
+
+def of_columns(variables: Mapping[Any, Any]) -> dict[str, str]:
+    """The attribute `validity` of a summary that has its columns."""
+    found = [variables[name].values for name in _JUDGED[:2] if name in variables]
+    if len(found) < len(_JUDGED[:2]) or any(one.dtype.kind != "U" for one in found):
+        return {}
+    return {"validity": validity_of(*found)}

@@ -1,0 +1,250 @@
+!> The inputs of an impact: what a case says, in SI, with one name for each quantity
+!>
+!> `vcor_case_reader` makes them from a case and is the only place that knows its keys.
+!> `vcor_case_problem` builds impact and solver from them. They are a value: a point of a sweep, or
+!> another model of the same impact, is a copy with other components.
+!>
+!> A new quantity is a component here, a line of `put` if it is a number, its use in
+!> `vcor_case_problem`, and its key's row in the catalogue. Two keys for one quantity, such as
+!> diameter, are two lines of `put`.
+module vcor_case_inputs
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_impact_contact, only : pair_eq1
+   use vcor_impact_face, only : base_free
+   use vcor_impact_plate, only : waves_relaxing
+   use vcor_kinds, only : pi, standard_gravity, unset, wp
+   use vcor_material, only : material_data_t
+   use vcor_solver_type, only : solver_settings_t
+   implicit none
+   private
+
+   public :: inputs_t, quantity_t, is_same
+   public :: shape_sphere, shape_true_sphere, shape_cone, shape_punch, shape_power
+   public :: waves_body, of_sphere, of_plate, positive_or_zero
+
+   !> Shapes of the striking body
+   integer, parameter :: shape_sphere = 1, shape_true_sphere = 2, shape_cone = 3, shape_punch = 4, &
+      shape_power = 5
+   !> Waves in a plate of any thickness, beside the `waves_*` of a thin one
+   integer, parameter :: waves_body = 5
+   !> Places of the two bodies
+   integer, parameter :: of_sphere = 1, of_plate = 2
+
+   !> The inputs; a number that is not given is NaN
+   type :: inputs_t
+      !> Velocity of approach [m/s], or in its place the height of a drop [m]
+      real(wp) :: velocity = unset, drop_height = unset
+      !> Gravity along the impact [m/s2]
+      real(wp) :: gravity = unset
+      !> One of the `shape_*` constants
+      integer :: shape = shape_sphere
+      !> Radius of a sphere [m]
+      real(wp) :: radius = unset
+      !> Mass of the striking body [kg]; not given: that of a sphere of this radius
+      real(wp) :: mass = unset
+      !> Angle between axis and side of a cone [deg]
+      real(wp) :: half_angle = unset
+      !> Radius of a flat punch [m]
+      real(wp) :: punch_radius = unset
+      !> C [m^(1-p)] and p [-] of a profile z = C r^p
+      real(wp) :: profile_coefficient = unset, profile_power = unset
+      !> Materials of sphere and plate; their lists are compared by identities
+      type(material_data_t) :: material(2)
+      !> Yield strengths of sphere and plate [Pa]
+      real(wp) :: yield_strength(2) = unset
+      !> Numbers of the materials in the case, for messages; equal: one material
+      integer :: item(2) = 0
+      !> One of base_free, base_bonded and base_sliding
+      integer :: base = base_free
+      !> One of the `waves_*` constants
+      integer :: waves = waves_relaxing
+      !> Whether `mechanics` chose the waves for this kind of surface: a second sphere has none
+      logical :: waves_are_chosen = .false.
+      !> Half the thickness of the plate or layer [m]; 0 if there is none
+      real(wp) :: half_thickness = 0.0_wp
+      !> Radius of curvature of the surface [m]: 0 = flat, negative = concave
+      real(wp) :: surface_radius = 0.0_wp
+      !> Distance to the nearest edge of the plate [m]
+      real(wp) :: extent = unset
+      !> Whether the contact recedes
+      logical :: receding = .false.
+      !> One of the `pair_*` constants
+      integer :: pair = pair_eq1
+      !> Settings of the solution
+      type(solver_settings_t) :: settings
+   contains
+      procedure :: put
+      procedure :: approach_velocity
+      procedure :: striking_mass
+      procedure :: is_one_contact
+   end type inputs_t
+
+   !> A number of the inputs that varies: the key and the bodies that it belongs to
+   type :: quantity_t
+      !> Its key
+      character(len=26) :: key = ''
+      !> Whether it is of the material of the sphere, and of the plate
+      logical :: of_body(2) = .false.
+      !> Index of the number in a list; 0: no list
+      integer :: element = 0
+   end type quantity_t
+
+   !> Whether two sets of inputs, or settings, are the same
+   interface is_same
+      module procedure same_number
+      module procedure same_settings
+   end interface is_same
+
+contains
+
+   !> Set a number
+   pure subroutine put(self, quantity, value)
+      class(inputs_t), intent(inout) :: self
+      type(quantity_t), intent(in) :: quantity
+      !> In the unit of the key; NaN: not given
+      real(wp), intent(in) :: value
+
+      integer :: i
+
+      if (any(quantity%of_body)) then
+         do i = 1, size(self%material)
+            if (quantity%of_body(i)) call put_material(self, i, quantity, value)
+         end do
+         return
+      end if
+      select case (quantity%key)
+      case ('velocity')
+         self%velocity = value
+      case ('drop_height')
+         self%drop_height = value
+      case ('gravity')
+         self%gravity = value
+      case ('temperature')
+         do i = 1, size(self%material)
+            if (self%material(i)%shift%law /= '') self%material(i)%temperature = value
+         end do
+      case ('radius')
+         self%radius = value
+      case ('diameter')
+         self%radius = 0.5_wp*value
+      case ('mass')
+         self%mass = value
+      case ('half_angle')
+         self%half_angle = value
+      case ('punch_radius')
+         self%punch_radius = value
+      case ('profile_coefficient')
+         self%profile_coefficient = value
+      case ('profile_power')
+         self%profile_power = value
+      case ('half_thickness')
+         self%half_thickness = positive_or_zero(value)
+      case ('thickness')
+         self%half_thickness = 0.5_wp*positive_or_zero(value)
+      case ('surface_radius')
+         self%surface_radius = value
+      case ('extent')
+         self%extent = value
+      case ('time_step')
+         self%settings%time_step = positive_or_zero(value)
+      case ('end_time')
+         self%settings%end_time = positive_or_zero(value)
+      case ('accuracy')
+         self%settings%accuracy = positive_or_zero(value)
+      case ('volterra_coefficient')
+         self%settings%second_coefficient = value
+      case default
+         continue
+      end select
+   end subroutine put
+
+   !> Set a number of a material
+   pure subroutine put_material(self, body, quantity, value)
+      type(inputs_t), intent(inout) :: self
+      !> of_sphere or of_plate
+      integer, intent(in) :: body
+      type(quantity_t), intent(in) :: quantity
+      real(wp), intent(in) :: value
+
+      real(wp), allocatable :: list(:)
+
+      if (quantity%key == 'yield_strength') then
+         self%yield_strength(body) = value
+      else if (quantity%element == 0) then
+         if (.not. ieee_is_nan(value)) call self%material(body)%set(trim(quantity%key), value)
+      else
+         list = self%material(body)%list(trim(quantity%key))
+         list(quantity%element) = value
+         call self%material(body)%set_list(trim(quantity%key), list)
+      end if
+   end subroutine put_material
+
+   !> Velocity of approach
+   pure function approach_velocity(self) result(velocity)
+      class(inputs_t), intent(in) :: self
+      !> [m/s]
+      real(wp) :: velocity
+
+      real(wp) :: gravity
+
+      velocity = self%velocity
+      if (.not. ieee_is_nan(velocity)) return
+      gravity = positive_or_zero(self%gravity)
+      velocity = sqrt(2.0_wp*self%drop_height*merge(gravity, standard_gravity, gravity > 0.0_wp))
+   end function approach_velocity
+
+   !> Mass of the striking body
+   pure function striking_mass(self, density) result(mass)
+      class(inputs_t), intent(in) :: self
+      !> Density of its material [kg/m3]
+      real(wp), intent(in) :: density
+      !> [kg]; 0 if neither mass nor density is given
+      real(wp) :: mass
+
+      mass = self%mass
+      if (ieee_is_nan(mass)) mass = 4.0_wp/3.0_wp*pi*self%radius**3*density
+   end function striking_mass
+
+   !> Whether two sets of inputs have contact modulus, plate and face in common, materials aside
+   pure function is_one_contact(self, other) result(same)
+      class(inputs_t), intent(in) :: self
+      class(inputs_t), intent(in) :: other
+      logical :: same
+
+      same = self%pair == other%pair .and. self%waves == other%waves .and. self%base == other%base &
+         .and. is_same(self%half_thickness, other%half_thickness) &
+         .and. self%settings%method == other%settings%method
+   end function is_one_contact
+
+   !> Whether two numbers are the same; NaN is the same as NaN
+   elemental function same_number(a, b) result(same)
+      real(wp), intent(in) :: a, b
+      logical :: same
+
+      same = ieee_is_nan(a) .and. ieee_is_nan(b)
+      if (ieee_is_nan(a) .or. ieee_is_nan(b)) return
+      same = .not. abs(a - b) > 0.0_wp
+   end function same_number
+
+   !> Whether two settings are the same
+   pure function same_settings(a, b) result(same)
+      type(solver_settings_t), intent(in) :: a, b
+      logical :: same
+
+      same = all(is_same([a%time_step, a%end_time, a%accuracy, a%second_coefficient], &
+         [b%time_step, b%end_time, b%accuracy, b%second_coefficient])) &
+         .and. a%method == b%method .and. a%scheme == b%scheme .and. a%form == b%form &
+         .and. a%quadrature == b%quadrature .and. (a%ghost .eqv. b%ghost)
+   end function same_settings
+
+   !> A positive number; 0 if there is none
+   pure function positive_or_zero(number) result(positive)
+      !> NaN if there is none
+      real(wp), intent(in) :: number
+      real(wp) :: positive
+
+      positive = number
+      if (ieee_is_nan(number)) positive = 0.0_wp
+   end function positive_or_zero
+
+end module vcor_case_inputs

@@ -1,0 +1,290 @@
+!> Reads the inputs of an impact from a case
+!>
+!> The only place that knows the keys of impact, bodies, contact and solver, which of them say the
+!> same, and what each that is left out has no effect on. Values are taken through `reading`, which
+!> records them: what is set and not read is refused. So a value is read where it has an effect, and
+!> only there.
+module vcor_case_reader
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_case_body, only : read_material
+   use vcor_case_case, only : address_t, case_t
+   use vcor_case_catalogue, only : catalogue, find_group
+   use vcor_case_inputs, only : inputs_t, of_plate, of_sphere, quantity_t, shape_cone, &
+      shape_power, shape_punch, shape_sphere, shape_true_sphere, waves_body
+   use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
+   use vcor_case_reading, only : reading_t
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_contact, only : pair_eq1, pair_series
+   use vcor_impact_face, only : base_bonded, base_free, base_sliding
+   use vcor_impact_plate, only : waves_constant, waves_frozen, waves_hereditary, waves_none, &
+      waves_relaxing
+   use vcor_kinds, only : wp
+   use vcor_solver_features, only : features, of_ghost, of_second_term, unread, why_unread
+   implicit none
+   private
+
+   public :: read_inputs, quantity_at, waves_of
+
+   !> Words of a key and what they mean
+   character(len=*), parameter :: shape_names(*) = [character(len=11) :: 'sphere', 'true_sphere', &
+      'cone', 'punch', 'power']
+   integer, parameter :: shapes(*) = [shape_sphere, shape_true_sphere, shape_cone, shape_punch, &
+      shape_power]
+   character(len=*), parameter :: wave_names(*) = [character(len=10) :: 'none', 'constant', &
+      'relaxing', 'frozen', 'hereditary', 'body']
+   integer, parameter :: waves(*) = [waves_none, waves_constant, waves_relaxing, waves_frozen, &
+      waves_hereditary, waves_body]
+   character(len=*), parameter :: base_names(*) = [character(len=7) :: 'free', 'bonded', 'sliding']
+   integer, parameter :: bases(*) = [base_free, base_bonded, base_sliding]
+
+   !> Groups of the bodies, by their places
+   character(len=*), parameter :: bodies(*) = [character(len=6) :: 'sphere', 'plate']
+
+contains
+
+   !> Read the inputs of an impact
+   subroutine read_inputs(case, inputs, reading, error)
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(out) :: inputs
+      !> What they take of the case
+      type(reading_t), intent(out) :: reading
+      !> Error of code `error_input` if the case is not checked, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      if (min(case%material_of('sphere'), case%material_of('plate')) < 1) then
+         call raise(error, error_input, 'the case is empty or not checked: expected read_case, ' &
+            //'then validate, without an error')
+         return
+      end if
+      call reading%start(case)
+      do i = 1, size(bodies)
+         inputs%item(i) = case%material_of(bodies(i))
+         call reading%mark(case%address(bodies(i), 'material'))
+         call read_material(case, inputs%item(i), reading, inputs%material(i))
+      end do
+      call read_sphere(case, inputs, reading)
+      call read_plate(case, inputs, reading)
+      call read_contact(case, inputs, reading)
+      call read_solver(case, inputs, reading)
+   end subroutine read_inputs
+
+   !> Read the motion, and what strikes
+   subroutine read_sphere(case, inputs, reading)
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      type(reading_t), intent(inout) :: reading
+
+      character(len=:), allocatable :: text
+      type(address_t) :: density
+
+      call take(case, inputs, reading, 'impact', 'velocity')
+      call take(case, inputs, reading, 'impact', 'drop_height')
+      call reading%get(case, 'sphere', 'shape', text)
+      inputs%shape = shapes(findloc(shape_names == text, .true., dim=1))
+      call take(case, inputs, reading, 'sphere', 'radius')
+      if (ieee_is_nan(inputs%radius)) call take(case, inputs, reading, 'sphere', 'diameter')
+      select case (inputs%shape)
+      case (shape_cone)
+         call take(case, inputs, reading, 'sphere', 'half_angle')
+      case (shape_punch)
+         call take(case, inputs, reading, 'sphere', 'punch_radius')
+      case (shape_power)
+         call take(case, inputs, reading, 'sphere', 'profile_coefficient')
+         call take(case, inputs, reading, 'sphere', 'profile_power')
+      case default
+         continue
+      end select
+      call take(case, inputs, reading, 'sphere', 'mass')
+      density = case%address('material', 'density', inputs%item(of_sphere))
+      if (case%given('sphere', 'mass')) then
+         call reading%leave(density, 'sphere.mass gives the mass of the sphere')
+      else if (ieee_is_nan(inputs%mass)) then
+         call reading%mark(density)
+      end if
+      call take(case, inputs, reading, 'material', 'yield_strength', of_sphere)
+   end subroutine read_sphere
+
+   !> Read the plate; a rigid one has neither waves nor a base
+   subroutine read_plate(case, inputs, reading)
+      !> The materials read
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      type(reading_t), intent(inout) :: reading
+
+      character(len=*), parameter :: keys(*) = [character(len=14) :: 'base', 'waves', &
+         'half_thickness', 'thickness', 'extent']
+      character(len=*), parameter :: at_rest = 'the plate is rigid and does not move'
+      character(len=:), allocatable :: mechanics, text
+      integer :: i
+
+      call take(case, inputs, reading, 'plate', 'surface_radius')
+      call take(case, inputs, reading, 'material', 'yield_strength', of_plate)
+      if (inputs%material(of_plate)%model == 'rigid') then
+         inputs%waves = waves_none
+         do i = 1, size(keys)
+            call reading%leave(case%address('plate', keys(i)), at_rest)
+         end do
+         call reading%leave(case%address('material', 'density', inputs%item(of_plate)), at_rest)
+         return
+      end if
+      call reading%mark(case%address('material', 'density', inputs%item(of_plate)))
+      call take(case, inputs, reading, 'plate', 'half_thickness')
+      if (.not. inputs%half_thickness > 0.0_wp) &
+         call take(case, inputs, reading, 'plate', 'thickness')
+      call reading%get(case, 'plate', 'base', text)
+      inputs%base = bases(findloc(base_names == text, .true., dim=1))
+      call reading%get(case, 'plate', 'waves', text)
+      inputs%waves = waves_of(text)
+      call case%get('contact', 'mechanics', mechanics)
+      inputs%waves_are_chosen = mechanics == 'exact' .and. .not. case%given('plate', 'waves')
+      if (text == 'none') then
+         call reading%leave(case%address('plate', 'extent'), &
+            "with plate.waves = 'none' the plate does not move")
+      else
+         call take(case, inputs, reading, 'plate', 'extent')
+      end if
+   end subroutine read_plate
+
+   !> Waves by their name in a case
+   pure function waves_of(name) result(kind)
+      character(len=*), intent(in) :: name
+      !> One of the `waves_*` constants
+      integer :: kind
+
+      kind = waves(findloc(wave_names == name, .true., dim=1))
+   end function waves_of
+
+   !> Read the contact law and the rule for pairs
+   subroutine read_contact(case, inputs, reading)
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      type(reading_t), intent(inout) :: reading
+
+      character(len=:), allocatable :: text
+
+      call case%get('contact', 'law', text)
+      inputs%receding = text == 'receding'
+      if (inputs%shape == shape_punch) then
+         ! a user who requests it gets an error
+         inputs%receding = inputs%receding .and. case%given('contact', 'law')
+         call reading%leave(case%address('contact', 'law'), &
+            'the contact of a flat punch does not recede')
+      else
+         call reading%mark(case%address('contact', 'law'))
+      end if
+      if (why_no_pair(case) == '') then
+         call reading%get(case, 'contact', 'pair', text)
+         inputs%pair = merge(pair_series, pair_eq1, text == 'series')
+      else
+         call reading%leave(case%address('contact', 'pair'), why_no_pair(case))
+      end if
+      ! it chooses what is not given
+      if (case%given('contact', 'law') .and. case%given('contact', 'pair') &
+          .and. case%given('plate', 'waves')) then
+         call reading%leave(case%address('contact', 'mechanics'), &
+            'contact.law, contact.pair and plate.waves are all given')
+      else
+         call reading%mark(case%address('contact', 'mechanics'))
+      end if
+   end subroutine read_contact
+
+   !> Read the method and what belongs to it
+   subroutine read_solver(case, inputs, reading)
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      type(reading_t), intent(inout) :: reading
+
+      !> Keys that depend on the method
+      character(len=*), parameter :: groups(*) = [character(len=6) :: 'impact', 'solver', &
+         'solver', 'solver', 'solver', 'solver', 'solver', 'solver']
+      character(len=*), parameter :: keys(*) = [character(len=25) :: 'gravity', 'scheme', 'form', &
+         'quadrature', 'time_step', 'volterra_order', 'volterra_coefficient', &
+         'continue_after_separation']
+      character(len=:), allocatable :: text
+      character(len=len(unread%reason)) :: reason
+      logical :: has(size(features))
+      integer :: i
+
+      associate (settings => inputs%settings)
+         call reading%get(case, 'solver', 'method', text)
+         settings%method = text
+         call case%get('solver', 'scheme', text)
+         settings%scheme = text
+         call case%get('solver', 'form', text)
+         settings%form = text
+         call case%get('solver', 'quadrature', text)
+         settings%quadrature = text
+         has = features_of_case(case)
+         settings%ghost = has(of_ghost)
+      end associate
+      ! they count whether the method reads them or not: it refuses what it cannot take
+      call put(case, inputs, 'impact', 'gravity')
+      call put(case, inputs, 'solver', 'time_step')
+      if (has(of_second_term)) call put(case, inputs, 'solver', 'volterra_coefficient')
+      call take(case, inputs, reading, 'solver', 'end_time')
+      call take(case, inputs, reading, 'solver', 'accuracy')
+      do i = 1, size(keys)
+         reason = why_unread(trim(groups(i)), trim(keys(i)), place_of_method(case), has)
+         if (reason == '') then
+            call reading%mark(case%address(trim(groups(i)), trim(keys(i))))
+         else
+            call reading%leave(case%address(trim(groups(i)), trim(keys(i))), trim(reason))
+         end if
+      end do
+   end subroutine read_solver
+
+   !> Read a number into the inputs, if there is one
+   subroutine take(case, inputs, reading, group, key, body)
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      type(reading_t), intent(inout) :: reading
+      character(len=*), intent(in) :: group, key
+      !> Body of the material; absent: not of a material
+      integer, intent(in), optional :: body
+
+      if (present(body)) then
+         call reading%mark(case%address(group, key, inputs%item(body)))
+      else
+         call reading%mark(case%address(group, key))
+      end if
+      call put(case, inputs, group, key, body)
+   end subroutine take
+
+   !> Put a number of the case into the inputs, if there is one, without a record of it
+   subroutine put(case, inputs, group, key, body)
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      character(len=*), intent(in) :: group, key
+      !> Body of the material; absent: not of a material
+      integer, intent(in), optional :: body
+
+      type(quantity_t) :: quantity
+      real(wp) :: number
+      integer :: item
+
+      item = 1
+      quantity%key = key
+      if (present(body)) then
+         item = inputs%item(body)
+         quantity%of_body(body) = .true.
+      end if
+      number = case%number(case%address(group, key, item))
+      if (.not. ieee_is_nan(number)) call inputs%put(quantity, number)
+   end subroutine put
+
+   !> The number of the inputs at an address of the case
+   pure function quantity_at(address, inputs) result(quantity)
+      type(address_t), intent(in) :: address
+      !> The inputs of its case
+      type(inputs_t), intent(in) :: inputs
+      type(quantity_t) :: quantity
+
+      quantity%key = catalogue(address%row)%name
+      quantity%element = address%element
+      if (address%group == find_group('material')) quantity%of_body = inputs%item == address%item
+   end function quantity_at
+
+end module vcor_case_reader
