@@ -127,9 +127,13 @@ contains
       is_shown = .false.
       if (waves == 'body' .and. outcome%is_coupled()) return
       exact = model_t(waves, 'receding', 'series')
-      if ((waves /= 'none' .or. case%has_thickness()) .and. .not. case%has_second_sphere()) &
-         exact%waves = 'body'
+      if (.not. case%has_second_sphere()) exact%waves = 'body'
       call solve_model(case, exact, is_valid)
+      if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
+         ! a half space without density has no waves
+         exact = model_t(waves, 'receding', 'series')
+         call solve_model(case, exact, is_valid)
+      end if
       is_shown = allocated(exact%failure)
       if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
    end subroutine solve_exact

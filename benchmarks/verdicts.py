@@ -16,6 +16,7 @@ import math
 import os
 import re
 import sys
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -233,6 +234,7 @@ def report(name: str, impacts: list[Impact]) -> str:
 
 def main() -> None:
     """Draw, solve and print."""
+    warnings.simplefilter("ignore", vcor.ValidityWarning)
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
