@@ -331,9 +331,13 @@ def test_silent_where_it_is_sound(vcor, text):
 
 
 def test_exact_mechanics(vcor):
-    """Shown where they differ: not of elastic bodies without waves, nor where they are the case's own."""
-    half_space = GLASS.replace("half_thickness", "extent")
-    assert "exact" not in screen(vcor, half_space, "--set", "plate.waves=none")
+    """Shown where they differ: of a half space that has a density, not where they are the case's own."""
+    half_space = LAYER.replace(", thickness = 0.005, base = 'bonded'", ", waves = 'none'")
+    out = screen(vcor, half_space)
+    exact = numbers(vcor, half_space, "--set", "plate.waves=body")["cor_sphere"]
+    assert exact < 0.95 and f"with exact mechanics {exact:.4f}" in out
+    assert "exact: waves body, law receding" in out
+    assert "exact mechanics" not in screen(vcor, half_space.replace(", density = 1100", ""))
     own = (ROOT / "examples" / "sls_exact.nml").read_text(encoding="utf-8")
     assert "exact mechanics  " not in screen(vcor, own)
     assert "with exact mechanics" in screen(vcor, BEADS)
@@ -345,7 +349,7 @@ def test_exact_mechanics(vcor):
 
 
 def test_exact_mechanics_of_plates(vcor):
-    """Those of the plate as it is, where it has waves or a thickness and could bend; with an accuracy of its own."""
+    """Those of the plate as it is, a half space if it has no thickness; with an accuracy of its own."""
     for settings in (["plate.half_thickness=0.003"], ["plate.half_thickness=0.02", "plate.waves=none"]):
         words = [word for setting in settings for word in ("--set", setting)]
         out = screen(vcor, SLS, *words, "--set", "impact.velocity=0.1", "--set", "solver.accuracy=1e-10")
@@ -355,7 +359,7 @@ def test_exact_mechanics_of_plates(vcor):
         (line,) = [line for line in out.splitlines() if "  with exact mechanics" in line]
         assert " e_a " in line
     out = screen(vcor, SLS.replace("half_thickness", "extent"), "--set", "plate.waves=none")
-    assert "exact: waves none, law receding\n" in out
+    assert "exact: waves body, law receding\n" in out
 
 
 def test_what_a_plate_with_waves_contains(vcor):
