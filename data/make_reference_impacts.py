@@ -12,6 +12,7 @@ import io
 import json
 import re
 import sys
+import warnings
 from pathlib import Path
 
 import f90nml
@@ -171,6 +172,7 @@ def waves():
 
 def main():
     """Write the file."""
+    warnings.simplefilter("ignore", vcor.ValidityWarning)
     made = {
         "about": "Impacts of a body on a plate, half space, layer or sphere, linear and without friction, SI units. "
         "docs/reference_impacts.md explains every field.",

@@ -13,7 +13,7 @@ module vcor
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, face_t, &
       new_face
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, &
+   use vcor_impact_target, only : new_plate, target_t, waves_constant, &
       waves_frozen, waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
@@ -47,7 +47,7 @@ module vcor
    public :: new_mittag_leffler, new_tabulated
    ! an impact
    public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
-   public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
+   public :: target_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: waves_hereditary
    public :: face_t, new_face, base_half_space, base_free, base_bonded, base_sliding
    public :: impact_t, new_impact, contact_law_t, new_contact_law

@@ -71,6 +71,17 @@ def test_validity(call):
     assert (found.attrs["validity"] == "good") == (worst == {"good"}) == (lines == [])
 
 
+@pytest.mark.parametrize("asked", ["validity", ["cor", "validity"]])
+def test_who_asks_for_the_validity_is_not_warned(asked):
+    for work in (
+        lambda: butyl().solve(quantities=asked),
+        lambda: butyl().points({"impact.velocity": [1.0, 2.0]}, asked),
+        lambda: butyl().sweep({"impact.velocity": [1.0, 2.0]}, asked),
+    ):
+        assert heard(work, vcor.ValidityWarning)[1] == []
+    assert heard(lambda: butyl().solve(quantities=["cor"]), vcor.ValidityWarning)[1] != []
+
+
 @pytest.mark.parametrize("ball", ["elastic", "rigid", "same"])
 @pytest.mark.parametrize("base", ["bonded", "sliding"])
 def test_layers_on_a_base(ball, base):

@@ -12,10 +12,11 @@ import vcor
 # The library, whose calls sleep for a long time; SIGINT comes when one does. What describes
 # columns and addresses ends at once, and is called where it is asked.
 SCRIPT = """
-import ctypes, os, signal, sys, threading
+import ctypes, os, signal, sys, threading, warnings
 import vcor
 from vcor import _library
 
+warnings.simplefilter("ignore", vcor.ValidityWarning)
 case = vcor.read(sys.argv[1])
 case.solve()
 sleep = ctypes.CDLL(None).sleep
@@ -68,9 +69,10 @@ def test_ctrl_c(sls, call, mask):
 # A comparison of some seconds, and calls when it has begun to solve: their time is that of the
 # processor, which does not depend on what else the machine does
 BESIDE = """
-import sys, threading, time
+import sys, threading, time, warnings
 import vcor
 
+warnings.simplefilter("ignore", vcor.ValidityWarning)
 case = vcor.read(sys.argv[1])
 long = case.copy()
 long["solver.method"], long["solver.time_step"] = "direct", 3e-8

@@ -36,8 +36,8 @@ def arrows():
 
 #: Layers: cases and results; materials from data, with the figures that show both; exchange
 CORE = {
-    "_command", "_differences", "_library", "_text", "arguments", "case", "material", "progress",
-    "results",
+    "_command", "_coverage", "_differences", "_library", "_text", "arguments", "case", "material",
+    "progress", "results",
 }  # fmt: skip
 EXCHANGE = "exchange."
 

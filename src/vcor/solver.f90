@@ -21,9 +21,10 @@ module vcor_solver
    public :: default_accuracy, settle
 
    !> The method `auto`: that which the table of `vcor_solver_features` gives for the impact; where
-   !> it is internal variables, also product integration if they fail. They fail if no sum of
-   !> exponentials represents the kernel: for a table whose data begin long after the end of the
-   !> contact, for some pairs, and for exponents near a limit; and if a receding contact grows again
+   !> it is internal variables, also product integration if they fail, or if a structure strikes
+   !> again after the first separation. They fail if no sum of exponentials represents the kernel:
+   !> for a table whose data begin long after the end of the contact, for some pairs, and for
+   !> exponents near a limit; and if a receding contact grows again
    type, extends(solver_t) :: auto_t
       !> Method for waves in a plate of any thickness
       type(coupled_t), allocatable :: coupled
@@ -234,7 +235,8 @@ contains
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
-      else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
+      else if (trajectory%status /= contact_separated &
+               .or. .not. (trajectory%misses_by_far() .or. trajectory%returns)) then
          return
       end if
       call self%product%solve(impact, trajectory, error)

@@ -4,7 +4,7 @@ module vcor_test_cases
    use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t
+   use vcor_impact_target, only : new_plate, target_t
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_io_case_reader, only : read_case
@@ -135,7 +135,7 @@ contains
       real(wp), parameter :: usual_density = 1100.0_wp, half_thickness = 0.02_wp
       class(material_t), allocatable :: surface
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(error_t), allocatable :: error
       real(wp) :: r, m
 

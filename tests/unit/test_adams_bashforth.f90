@@ -2,7 +2,7 @@
 program test_adams_bashforth
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : waves_frozen, waves_none, waves_relaxing
+   use vcor_impact_target, only : waves_frozen, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_indentation, col_plate, col_sphere, &
       col_time, col_velocity, contact_lasting, contact_separated, trajectory_t

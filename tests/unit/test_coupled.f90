@@ -7,7 +7,7 @@ program test_coupled
    use vcor_impact_history, only : history, history_columns
    use vcor_impact_law, only : cone_factor, new_contact_law, profile_factor, punch_factor
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : waves_none
+   use vcor_impact_target, only : waves_none
    use vcor_impact_problem, only : impact_t
    use vcor_impact_response, only : static_response, wave_response
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_sphere, &

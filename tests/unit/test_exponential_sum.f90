@@ -3,7 +3,7 @@ program test_exponential_sum
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_none
+   use vcor_impact_target, only : new_plate, target_t, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
@@ -213,7 +213,7 @@ contains
       type(material_data_t) :: data
       class(material_t), allocatable :: rigid
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(error_t), allocatable :: error
 
       data%name = "steel"

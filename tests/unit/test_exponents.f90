@@ -3,7 +3,7 @@ program test_exponents
    use vcor_error, only : error_t
    use vcor_impact_law, only : new_contact_law
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : waves_none
+   use vcor_impact_target, only : waves_none
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_material_prony, only : new_elastic, new_prony, prony_t

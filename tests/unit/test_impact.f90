@@ -6,7 +6,7 @@ program test_impact
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
+   use vcor_impact_target, only : new_plate, target_t, waves_constant, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate_velocity, &
       col_sphere, col_sphere_velocity, col_time, col_velocity, columns, contact_lasting, &
@@ -145,7 +145,7 @@ contains
    !> Density and Poisson's ratio out of range are refused, and change nothing
    subroutine test_unsound_constants()
       type(prony_t) :: soft
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(error_t), allocatable :: error
       real(wp) :: ratio(5), density(3)
       integer :: i
@@ -468,7 +468,7 @@ contains
    !> Zener's parameter alpha
    subroutine test_plate()
       real(wp), parameter :: half = 0.02_wp, t = 4.0e-4_wp, h = t/500.0_wp
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(prony_t) :: nothing
       type(error_t), allocatable :: error
       real(wp), parameter :: none(0) = [real(wp) ::]
@@ -518,7 +518,7 @@ contains
       real(wp), parameter :: surface(3) = [0.0_wp, 0.03_wp, -0.03_wp]
       real(wp), parameter :: hertz(3) = [0.01_wp, 0.0075_wp, 0.015_wp]
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(impact_t) :: impact
       type(error_t), allocatable :: error
       real(wp) :: whole(1)

@@ -520,7 +520,7 @@ contains
       write(way, "(a, 1x, es7.1)") method, asked
       above = 0
       do i = 1, size(rows)
-         if (method == "ive" .and. rows(i)%impact%plate%frozen()) cycle
+         if (method == "ive" .and. rows(i)%impact%target%frozen()) cycle
          call test_impact(rows(i), filename//" "//trim(rows(i)%name)//", "//trim(way), solver, &
             asked, accuracy, above)
       end do

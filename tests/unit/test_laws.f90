@@ -3,7 +3,7 @@ program test_laws
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
+   use vcor_impact_target, only : new_plate, target_t, waves_constant, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
@@ -68,7 +68,7 @@ contains
          0.18412287416505_wp]
       type(prony_t) :: material, rigid
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(impact_t) :: impact
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
@@ -302,7 +302,7 @@ contains
          1.63464708309717e-3_wp]
       type(prony_t) :: material, rigid
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(impact_t) :: impact
       type(outcome_t) :: outcome, zener
       type(error_t), allocatable :: error

@@ -11,7 +11,7 @@ program test_library
       history_table, impact_t, inputs_t, material_t, mittag_leffler_t, new_cerf, &
       new_contact_law, new_contact_modulus, new_elastic, new_face, new_impact, new_mittag_leffler, &
       new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
-      new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, power_law_t, &
+      new_tabulated, outcome_t, override, pair_eq1, pair_series, target_t, power_law_t, &
       problem_of_case, problem_t, prony_t, read_case, read_case_text, read_data, &
       solve_impact, solve_sweep, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
       table_t, tabulated_t, trajectory_t, validate, version, waves_constant, &
@@ -108,7 +108,7 @@ contains
       type(mittag_leffler_t) :: mittag_leffler
       type(tabulated_t) :: tabulated
       type(trajectory_t) :: trajectory
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(contact_modulus_t) :: modulus
       type(error_t), allocatable :: error
       real(wp), allocatable :: state(:, :)
@@ -160,7 +160,7 @@ contains
          waves_hereditary, waves_frozen]
       type(prony_t) :: steel, rubber
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(contact_law_t) :: law
       type(impact_t) :: impact
       type(outcome_t) :: outcome, other
@@ -207,7 +207,7 @@ contains
       real(wp), parameter :: modulus_of = 1.0e7_wp, mass = 0.03_wp, radius = 0.01_wp
       type(prony_t) :: steel, rubber, other
       type(contact_modulus_t) :: modulus, empty
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(impact_t) :: impact, nothing
       type(outcome_t) :: outcome
       type(trajectory_t) :: trajectory

@@ -3,8 +3,8 @@ program test_mechanics
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_hereditary, waves_none, &
-      waves_relaxing
+   use vcor_impact_target, only : new_plate, target_t, waves_constant, waves_hereditary, &
+      waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
@@ -283,7 +283,7 @@ contains
       impact%law%receding = .true.
       call make_product(0.0_wp, direct_accuracy, product)
       do i = 1, size(light)
-         call new_plate(impact%plate, rubber, light(i), waves_relaxing, error)
+         call new_plate(impact%target, rubber, light(i), waves_relaxing, error)
          call success(error, "a light plate is built")
          do digits = 4, 11
             call make_ive(10.0_wp**(-digits), fast)
@@ -295,7 +295,7 @@ contains
             "a contact that grows again: stated error")
       end do
       do i = 1, size(heavier)
-         call new_plate(impact%plate, rubber, heavier(i), waves_relaxing, error)
+         call new_plate(impact%target, rubber, heavier(i), waves_relaxing, error)
          call success(error, "a plate is built")
          do digits = 4, 11
             call make_ive(10.0_wp**(-digits), fast)
@@ -529,7 +529,7 @@ contains
       real(wp), parameter :: accuracy(3) = [1.0e-5_wp, 1.0e-7_wp, 1.0e-9_wp]
       real(wp), parameter :: density = 1100.0_wp, half_thickness = 0.01_wp
       type(prony_t) :: prony(3)
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(exponential_sum_t) :: terms
       type(error_t), allocatable :: error
       real(wp) :: time, expected

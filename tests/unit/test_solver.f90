@@ -3,7 +3,7 @@ program test_solver
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : waves_none, waves_relaxing
+   use vcor_impact_target, only : waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
@@ -377,7 +377,7 @@ contains
       call check_close(maxval(abs(problem%mass*(problem%velocity &
          - state(col_sphere_velocity, :)) - state(col_impulse, :)))/state(col_impulse, n), &
          0.0_wp, rounding, name//": m (v0 - z') = I")
-      call check_close(maxval(abs(problem%plate%alpha(state(col_time, :)) &
+      call check_close(maxval(abs(problem%target%alpha(state(col_time, :)) &
          *state(col_impulse, :) - state(col_plate, :)))/largest, 0.0_wp, rounding, &
          name//": U = alpha I")
       call check(all(state(col_force, 1:n - 1) > 0.0_wp), name//": the force presses")

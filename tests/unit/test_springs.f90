@@ -5,7 +5,7 @@ program test_springs
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_layer_law, only : lay, layer_t, profile_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, waves_none, waves_relaxing
+   use vcor_impact_target, only : new_plate, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_response, only : base_bonded
    use vcor_kinds, only : pi, wp
@@ -228,7 +228,7 @@ contains
       do i = 1, size(cor)
          call make_rubber(rubber, viscosity(i))
          call make_contact(rubber, 1.5_wp, impact)
-         call new_plate(impact%plate, rubber, half_thickness(i), waves_relaxing, error)
+         call new_plate(impact%target, rubber, half_thickness(i), waves_relaxing, error)
          call success(error, "a light plate is built")
          impact%gravity = gravity(i)
          call run(product, impact, outcome)
@@ -253,7 +253,7 @@ contains
 
       call make_rubber(rubber, 0.0_wp)
       call make_contact(rubber, 1.5_wp, impact)
-      call new_plate(impact%plate, rubber, 8.0e-3_wp, waves_relaxing, error)
+      call new_plate(impact%target, rubber, 8.0e-3_wp, waves_relaxing, error)
       call success(error, "a light plate is built")
       call make_product(step, 0.1_wp, coarse)
       call make_product(0.5_wp*step, 0.1_wp, fine)

@@ -4,7 +4,7 @@ program test_volterra
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_frozen, waves_relaxing
+   use vcor_impact_target, only : new_plate, target_t, waves_frozen, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : col_force, col_time, trajectory_t
    use vcor_kinds, only : wp
@@ -68,7 +68,7 @@ contains
 
       type(prony_t) :: steel
       type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(target_t) :: plate
       type(error_t), allocatable :: error
 
       call new_rigid(steel)

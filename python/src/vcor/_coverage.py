@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from ctypes import byref, c_void_p
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 from . import _library
 from ._library import DataRangeWarning, Error, Floats, ValidityWarning, call
 
-if TYPE_CHECKING:
-    from .case import Case
+#: A `Case`, whose module uses this one
+Case = Any
 
 #: Columns that the remarks are made from
 _JUDGED = ("validity", "validity_cause", "status", "contact_time", "cor")
@@ -102,7 +102,12 @@ def validity_of(levels: ArrayLike, causes: ArrayLike) -> str:
 
 
 def about(
-    case: Case, addresses: Sequence[str], table: Floats, results: Floats, level: int = 3
+    case: Case,
+    addresses: Sequence[str],
+    table: Floats,
+    results: Floats,
+    asked: Sequence[str] | None = (),
+    level: int = 3,
 ) -> dict[str, str]:
     """What points do not know of themselves; warns of it.
 
@@ -112,6 +117,8 @@ def about(
         The case and its points, of shape (points, addresses).
     results
         Their columns, the last of which are those of `with_judged`.
+    asked
+        Quantities that the caller has named: who asks for the validity needs no warning of it.
     level
         Frames from here to the caller that is warned.
 
@@ -126,7 +133,9 @@ def about(
     said = {"validity": validity_of(levels, causes)}
     if lines := _beyond_data(case, addresses, table, *results[:, -3:].T):
         said["beyond_data"] = lines
-    if said["validity"] not in ("good", "none") and ValidityWarning not in _silent.get():
+    is_known = "validity" in ([asked] if isinstance(asked, str) else asked or ())
+    is_known = is_known or said["validity"] in ("good", "none")
+    if not is_known and ValidityWarning not in _silent.get():
         warnings.warn(
             f"{case.name}: validity: {said['validity']}", ValidityWarning, stacklevel=level
         )

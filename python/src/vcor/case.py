@@ -290,7 +290,8 @@ class Case:
         made = _coverage.Numbers(
             (name, columns[name].value(results[i])) for i, name in enumerate(names)
         )
-        vars(made).update(_coverage.about(self, list(point), row, found[:, :-1]))
+        said = _coverage.about(self, list(point), row, found[:, :-1], quantities)
+        vars(made).update(said)
         return made
 
     def points(
@@ -335,7 +336,7 @@ class Case:
             address: ("point", column) for address, column in zip(values, columns, strict=True)
         }
         made = self._dataset(names, results, coords)
-        made.attrs |= _coverage.about(self, list(given), table, results)
+        made.attrs |= _coverage.about(self, list(given), table, results, quantities)
         return made
 
     def sweep(
@@ -374,7 +375,7 @@ class Case:
         results = self._solve_all(list(axes), table, wanted, threads, progress)
         coords = {address: (address, axis) for address, axis in axes.items()}
         made = self._dataset(names, results, coords)
-        made.attrs |= _coverage.about(self, list(axes), table, results)
+        made.attrs |= _coverage.about(self, list(axes), table, results, quantities)
         return made
 
     def history(self) -> xr.Dataset:

@@ -11,7 +11,7 @@ module vcor_case_inputs
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_impact_contact, only : pair_eq1
    use vcor_impact_face, only : base_free
-   use vcor_impact_plate, only : waves_relaxing
+   use vcor_impact_target, only : waves_relaxing
    use vcor_kinds, only : pi, standard_gravity, unset, wp
    use vcor_material, only : material_data_t
    use vcor_solver_type, only : solver_settings_t

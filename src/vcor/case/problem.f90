@@ -29,8 +29,8 @@ module vcor_case_problem
       punch_factor, sphere_factor
    use vcor_impact_face, only : base_free, base_half_space, face_t, new_face
    use vcor_impact_layer_law, only : layer_t, lay, profile_t
-   use vcor_impact_plate, only : new_plate, waves_none
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_target, only : new_plate, waves_none
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : standard_gravity, wp
@@ -169,7 +169,7 @@ contains
 
       call new_contact_modulus(self%impact%modulus, self%sphere, self%plate, &
          inputs%material(of_sphere)%deforms_as(inputs%material(of_plate)), error, inputs%pair)
-      if (.not. allocated(error)) call new_plate(self%impact%plate, self%plate, &
+      if (.not. allocated(error)) call new_plate(self%impact%target, self%plate, &
          inputs%half_thickness, merge(waves_none, inputs%waves, inputs%waves == waves_body), error)
       if (.not. allocated(error)) call build_face(self, inputs, error)
       if (allocated(error)) then

@@ -16,7 +16,7 @@ module vcor_case_reader
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : pair_eq1, pair_series
    use vcor_impact_face, only : base_bonded, base_free, base_sliding
-   use vcor_impact_plate, only : waves_constant, waves_frozen, waves_hereditary, waves_none, &
+   use vcor_impact_target, only : waves_constant, waves_frozen, waves_hereditary, waves_none, &
       waves_relaxing
    use vcor_kinds, only : wp
    use vcor_solver_features, only : features, of_ghost, of_second_term, unread, why_unread

@@ -56,6 +56,13 @@ module vcor_impact_outcome
       real(wp) :: weight_work = none
       !> Imbalance of the energies: initial - final energy + work of the weight - energy loss [J]
       real(wp) :: energy_imbalance = none
+      !> Number of contacts: more than one if a structure strikes again
+      integer :: contacts = 1
+      !> Time of the last separation [s]
+      real(wp) :: last_separation = none
+      !> Energy left in the modes of a structure at the last separation [J]; NaN if its material
+      !> relaxes
+      real(wp) :: structure_energy = 0.0_wp
       !> Lowest frequency of interest, 2 pi/t0 [rad/s]
       real(wp) :: min_frequency = none
       !> Zener's inelasticity parameter lambda [-]
@@ -158,13 +165,25 @@ contains
       outcome%contact_time = trajectory%state(col_time, n)
       impulse = trajectory%state(col_impulse, n) &
          - impact%mass*impact%gravity*outcome%contact_time
+      outcome%last_separation = outcome%contact_time
+      if (impact%target%structure%exists()) then
+         outcome%contact_time = trajectory%first_end
+         outcome%contacts = trajectory%contacts
+         outcome%structure_energy = trajectory%structure_energy
+      end if
       outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
+      if (impact%target%structure%exists()) outcome%cor = (trajectory%rigid_velocity &
+         - trajectory%state(col_sphere_velocity, n))/impact%velocity
       outcome%cor_sphere = impulse/(impact%mass*impact%velocity) - 1.0_wp
       outcome%resilience = outcome%cor_sphere**2
       outcome%hysteresis_energy = sum(trajectory%share(0:n) &
          *trajectory%state(col_velocity, 0:n))
       outcome%wave_energy = sum(trajectory%share(0:n) &
          *trajectory%state(col_plate_velocity, 0:n))
+      if (allocated(trajectory%work)) then
+         outcome%hysteresis_energy = trajectory%work(1)
+         outcome%wave_energy = trajectory%work(2)
+      end if
       outcome%energy_loss = outcome%hysteresis_energy + outcome%wave_energy
       if (ieee_is_nan(trajectory%state(col_plate, n))) then
          ! contact and plate solved as one: far away the plate is at rest, and the faces at the edge

@@ -16,7 +16,7 @@ module vcor_impact_problem
    use vcor_impact_contact, only : contact_modulus_t
    use vcor_impact_face, only : face_t
    use vcor_impact_law, only : contact_law_t, sphere_factor
-   use vcor_impact_plate, only : plate_t
+   use vcor_impact_target, only : target_t
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    implicit none
@@ -36,8 +36,8 @@ module vcor_impact_problem
       real(wp) :: factor = 0.0_wp
       !> Contact modulus E'(t)
       type(contact_modulus_t) :: modulus
-      !> The plate
-      type(plate_t) :: plate
+      !> What lies behind the contact
+      type(target_t) :: target
       !> Contact law
       type(contact_law_t) :: law
       !> The face that is struck, for method coupled, which takes from it what modulus, plate and
@@ -69,7 +69,7 @@ module vcor_impact_problem
 contains
 
    !> Build an impact
-   pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, &
+   pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, target, &
                               error, law, gravity, face)
       type(impact_t), intent(out) :: self
       !> Velocity of approach [m/s], > 0
@@ -81,7 +81,7 @@ contains
       !> Radius of curvature of the plate at the contact [m]: 0 = flat, negative = concave
       real(wp), intent(in) :: surface_radius
       type(contact_modulus_t), intent(in) :: modulus
-      type(plate_t), intent(in) :: plate
+      type(target_t), intent(in) :: target
       type(error_t), allocatable, intent(out) :: error
       !> Contact law; absent: Hertz's with the integral over all the past
       type(contact_law_t), intent(in), optional :: law
@@ -99,7 +99,7 @@ contains
          return
       end if
       self%modulus = modulus
-      self%plate = plate
+      self%target = target
       if (present(law)) self%law = law
       if (present(face)) self%face = face
       call sphere_factor(radius, surface_radius, factor, error)
@@ -187,7 +187,7 @@ contains
       real(wp) :: drag
 
       drag = self%kernel_viscosity()*self%law%slope(0.0_wp)
-      force = drag*self%velocity/(1.0_wp + self%plate%alpha(0.0_wp)*drag)
+      force = drag*self%velocity/(1.0_wp + self%target%alpha(0.0_wp)*drag)
    end function first_force
 
    !> Contact radius
@@ -322,7 +322,7 @@ contains
    end function elastic_time
 
    !> Default time after which a contact counts as lasting: a thousand time scales, with the rubbery
-   !> modulus if there is one
+   !> modulus if there is one, and of the sphere on a structure
    pure function patience(self, time_scale) result(time)
       class(impact_t), intent(in) :: self
       !> Time scale T [s]
@@ -335,7 +335,7 @@ contains
       time = time_scale
       firmness = self%factor*self%modulus%rubbery()
       if (firmness > 0.0_wp) time = max(time, self%elastic_time(firmness))
-      time = 1000.0_wp*time
+      time = 1000.0_wp*max(time, self%target%structure%slowness(self%mass))
    end function patience
 
    !> Whether the plate may move away from the sphere and be caught up with within one step,
@@ -382,10 +382,10 @@ contains
       real(wp) :: firmness
 
       lambda = unset
-      if (self%plate%moves() .and. .not. self%plate%alpha(0.0_wp) > 0.0_wp) return
+      if (self%target%moves() .and. .not. self%target%alpha(0.0_wp) > 0.0_wp) return
       firmness = self%factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
-         lambda = self%plate%alpha(0.0_wp)*self%mass &
+         lambda = self%target%alpha(0.0_wp)*self%mass &
          /self%law%time_scale(self%mass, firmness, self%velocity)
    end function inelasticity
 
@@ -398,7 +398,7 @@ contains
       !> Parameter [-]
       real(wp) :: lambda
 
-      lambda = self%plate%alpha_after(1.0_wp/frequency)*self%mass &
+      lambda = self%target%alpha_after(1.0_wp/frequency)*self%mass &
          /self%elastic_time(self%factor*real(self%modulus%dynamic_modulus(frequency), wp))
    end function inelasticity_at
 

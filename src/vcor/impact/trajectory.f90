@@ -87,6 +87,19 @@ module vcor_impact_trajectory
       real(wp) :: accuracy = 0.0_wp
       !> Contact radius at the nodes [m], shape (0:); unallocated: that of the contact law
       real(wp), allocatable :: radius(:)
+      !> Number of contacts with a structure, the end of the first one [s], and whether another one
+      !> follows the separation, or may
+      integer :: contacts = 1
+      real(wp) :: first_end = unset
+      logical :: returns = .false.
+      !> Velocity of the structure's rigid motion [m/s], and energy left in its modes [J], at the
+      !> last separation
+      real(wp) :: rigid_velocity = 0.0_wp
+      real(wp) :: structure_energy = 0.0_wp
+      !> State at the last separation, while the run goes on
+      real(wp) :: separation(columns) = unset
+      !> Work of the force on the contact and on the structure [J], if the solver has summed it up
+      real(wp), allocatable :: work(:)
       !> Number of exponentials that approximate the kernel; 0 if it is used unchanged
       integer :: kernel_terms = 0
       !> Estimated largest relative error of that sum
@@ -163,7 +176,9 @@ contains
       !> Whether the motion has decayed
       logical, intent(out) :: stopped
 
-      if (impact%gravity > 0.0_wp) then
+      if (impact%target%structure%exists()) then
+         stopped = .false.
+      else if (impact%gravity > 0.0_wp) then
          stopped = self%rests(impact, is_last)
          if (stopped) self%status = contact_resting
       else
@@ -179,7 +194,7 @@ contains
       !> Error of code `error_numerical`
       type(error_t), allocatable, intent(out) :: error
 
-      if (impact%plate%moves() .or. impact%gravity > 0.0_wp) then
+      if (impact%target%yields() .or. impact%gravity > 0.0_wp) then
          call raise(error, error_numerical, "the contact grows again before it has ended, as on " &
             //"a plate that is too light for the sphere, which method = 'ive' does not follow")
       else
@@ -249,7 +264,7 @@ contains
          slope = impact%law%slope(now(col_indentation))
          viscosity = impact%kernel_viscosity()
          velocity = now(col_velocity) &
-            + impact%plate%alpha(now(col_time))*(now(col_force) - weight)
+            + impact%target%alpha(now(col_time))*(now(col_force) - weight)
          if (velocity > 0.0_wp .and. .not. impact%springs_back()) velocity = max(0.0_wp, velocity &
             - weight/((impact%kernel_integral(now(col_time)) + viscosity)*slope))
          root = huge(1.0_wp)

@@ -268,9 +268,9 @@ contains
          return
       end if
       wave_number = 0.0_wp
-      if ((impact%plate%moves() .or. around%has_body) &
+      if ((impact%target%moves() .or. around%has_body) &
           .and. .not. ieee_is_nan(around%thickness)) then
-         if (impact%plate%moves()) outcome%deflection_ratio = &
+         if (impact%target%moves()) outcome%deflection_ratio = &
             maxval(abs(trajectory%state(col_plate, 0:trajectory%last)))/around%thickness
          wave_number = sqrt(frequency/around%thickness*sqrt(12.0_wp*plate%density() &
             /(storage*plate%plane_strain_factor())))

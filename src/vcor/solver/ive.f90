@@ -95,7 +95,7 @@ contains
       if (allocated(error)) return
       effort%window = sum_window*impact%law%contact_time*impact%time_scale()
       call attempt(self, impact, effort, trajectory, worst, error)
-      if (allocated(error)) return
+      if (allocated(error) .or. trajectory%returns) return
       do trial = 2, most
          if (.not. worst > self%accuracy) return
          call attempt(self, impact, effort, other, last, failure)
@@ -131,8 +131,8 @@ contains
          if (allocated(error)) return
          ! an exact sum holds for all times
          window = effort%window
-         if (.not. (sums%contact%error > 0.0_wp .or. impact%plate%hereditary())) &
-            window = huge(1.0_wp)
+         if (.not. (sums%contact%error > 0.0_wp .or. impact%target%hereditary() &
+             .or. impact%target%structure%is_viscoelastic())) window = huge(1.0_wp)
          call follow(self%rules, self%bridge, impact, sums, self%accuracy, effort%march, &
             time_scale, end_time, window, trajectory, of_march, complete, error)
          if (complete .or. allocated(error)) exit
@@ -188,8 +188,12 @@ contains
             //'of this contact')
          return
       end if
-      if (.not. impact%plate%hereditary()) return
-      call impact%plate%response(window, sum_share*accuracy, sums%plate)
+      if (impact%target%structure%exists()) then
+         allocate (sums%vibration)
+         call impact%target%structure%expand(window, sum_share*accuracy, sums%vibration, error)
+      end if
+      if (.not. impact%target%hereditary()) return
+      call impact%target%response(window, sum_share*accuracy, sums%plate)
       if (.not. sums%plate%error < 1.0_wp) call raise(error, error_numerical, 'no sum of ' &
          //'exponentials represents the memory of this plate: use another plate.waves')
    end subroutine find_sums
@@ -227,9 +231,10 @@ contains
       end if
       associate (last => trajectory%state(:, trajectory%last))
          of_plate = 0.0_wp
-         if (impact%plate%hereditary()) of_plate = max(sums%plate%error, &
-            abs(sums%plate%integral(last(col_time))/(impact%plate%alpha(0.0_wp) &
-            + impact%plate%memory_integral(last(col_time))) - 1.0_wp))
+         if (impact%target%hereditary()) of_plate = max(sums%plate%error, &
+            abs(sums%plate%integral(last(col_time))/(impact%target%alpha(0.0_wp) &
+            + impact%target%memory_integral(last(col_time))) - 1.0_wp))
+         if (allocated(sums%vibration)) of_plate = sums%vibration%error
          of_velocity = of_kernel + of_plate
          errors(of_cor:of_cor_sphere) = of_velocity
          errors(of_time) = of_velocity*last(col_time)*impact%velocity/abs(last(col_velocity))

@@ -36,6 +36,8 @@ module vcor_solver_type
       real(wp) :: accuracy = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series, Eq. (10) [m^-1.5]; 0: without it
       real(wp) :: second_coefficient = 0.0_wp
+      !> End at the first separation from a structure, whether or not it is the last
+      logical :: first_contact = .false.
       !> Continue after the separation, to `end_time` or to twice the contact time
       logical :: ghost = .false.
    end type solver_settings_t
@@ -77,9 +79,9 @@ contains
       has(of_paper_scheme) = settings%scheme /= 'product'
       if (.not. present(impact)) return
       has(of_body) = impact%face%has_waves
-      has(of_thin_plate) = impact%plate%moves()
-      has(of_hereditary_plate) = impact%plate%hereditary()
-      has(of_frozen_plate) = impact%plate%frozen()
+      has(of_thin_plate) = impact%target%moves()
+      has(of_hereditary_plate) = impact%target%hereditary()
+      has(of_frozen_plate) = impact%target%frozen()
       has(of_layer) = impact%law%is_of_layer()
       has(of_receding) = impact%law%receding
       has(of_viscosity) = impact%kernel_viscosity() > 0.0_wp
@@ -129,6 +131,11 @@ contains
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
             call outcome%settle(impact)
          if (all(outcome%status /= [contact_separated, contact_resting])) return
+         if (trajectory%returns .and. .not. solver%settings%first_contact) then
+            call raise(error, error_numerical, 'the structure strikes the sphere again after the ' &
+               //"first separation, which method = 'ive' does not follow: use method = 'auto'")
+            return
+         end if
          if (outcome%max_indentation > impact%law%deepest()) then
             write (depth, '(es9.2)') [outcome%max_indentation, impact%law%deepest()]
             call raise(error, error_numerical, 'the contact becomes wider than its law is known ' &

@@ -136,7 +136,7 @@ contains
       associate (first => comparison%attempts(attempt_first), &
                  own => comparison%attempts(attempt_case), impact => problem%impact)
          settings = settings_of(case, 'ive')
-         is_variant = impact%plate%frozen() .or. abs(settings%second_coefficient) > 0.0_wp
+         is_variant = impact%target%frozen() .or. abs(settings%second_coefficient) > 0.0_wp
          if (.not. is_variant) call make_attempt(first, settings, impact, error)
          if (allocated(error)) return
          if (is_variant .or. method == 'auto' .and. allocated(first%failure)) then

@@ -127,10 +127,10 @@ contains
       node(col_force) = 0.0_wp
       node(col_sphere_velocity) = impact%free_velocity(node(col_time)) &
          - node(col_impulse)/impact%mass
-      if (impact%plate%drifts()) then
+      if (impact%target%drifts()) then
          do j = -1, 1
             associate (near => trajectory%state(:, max(n - 1 + j, 0)))
-               drift(j) = impact%plate%alpha(near(col_time))*near(col_force) &
+               drift(j) = impact%target%alpha(near(col_time))*near(col_force) &
                   - near(col_plate_velocity)
             end associate
          end do
@@ -138,8 +138,8 @@ contains
             col_plate_velocity, theta)
          node(col_plate_velocity) = -parabola(drift, theta)
       else
-         node(col_plate) = impact%plate%alpha(node(col_time))*node(col_impulse)
-         node(col_plate_velocity) = impact%plate%alpha_rate(node(col_time))*node(col_impulse)
+         node(col_plate) = impact%target%alpha(node(col_time))*node(col_impulse)
+         node(col_plate_velocity) = impact%target%alpha_rate(node(col_time))*node(col_impulse)
       end if
       node(col_indentation) = node(col_sphere) - node(col_plate)
       node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)

@@ -13,7 +13,7 @@
 !> dashpot's impulse is exactly viscosity*u, so its force is not integrated; beside a frozen plate
 !> there is none.
 module vcor_solver_direct_motion
-   use vcor_impact_plate, only : plate_t
+   use vcor_impact_target, only : target_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_quadrature, only : endpoint_rule, gauss_nodes
@@ -89,14 +89,14 @@ contains
       real(wp) :: force(2)
 
       self%dt = dt
-      self%frozen = impact%plate%frozen()
+      self%frozen = impact%target%frozen()
       if (self%frozen) then
          force = start_force(impact, dt, [1.0_wp, 2.0_wp])
          self%power = log(force(2)/force(1))/log(2.0_wp)
          call gauss_nodes(self%node, self%share)
       end if
-      if (.not. impact%plate%hereditary()) return
-      call self%memory%set(memory_weights(impact%plate, dt, steps))
+      if (.not. impact%target%hereditary()) return
+      call self%memory%set(memory_weights(impact%target, dt, steps))
       call lengthen(self%in_u, 1, steps)
       call lengthen(self%in_rate, 1, steps)
    end subroutine prepare
@@ -119,8 +119,8 @@ contains
 
       self%t = self%dt*real(n, wp)
       last_alpha = self%alpha
-      self%alpha = impact%plate%alpha(self%t)
-      if (.not. self%frozen) self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
+      self%alpha = impact%target%alpha(self%t)
+      if (.not. self%frozen) self%alpha_rate = impact%target%alpha_rate(self%t, self%alpha)
       response = self%alpha + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
       ! trapezoids damp at once what decays at the rate 2/dt, and what is faster better than the
@@ -134,7 +134,7 @@ contains
       if (n == 1) then
          self%drift_rule = [first_drift(impact, self%dt), 0.0_wp, 0.0_wp]
       else
-         self%drift_rule = rule_of_drift(self, impact%plate, n, last_alpha, stiff .or. n == 2)
+         self%drift_rule = rule_of_drift(self, impact%target, n, last_alpha, stiff .or. n == 2)
       end if
       call go_on(self%push, self%rule)
       call go_on(self%drift, self%drift_rule)
@@ -241,7 +241,7 @@ contains
       real(wp), allocatable :: node(:), share(:)
 
       call endpoint_rule(node, share)
-      weight = dt*sum(share*impact%plate%alpha_rate(dt*node)*start_force(impact, dt, node)) &
+      weight = dt*sum(share*impact%target%alpha_rate(dt*node)*start_force(impact, dt, node)) &
          /sum(start_force(impact, dt, [1.0_wp]))
    end function first_drift
 
@@ -251,7 +251,7 @@ contains
    pure function rule_of_drift(self, plate, n, start, linear) result(rule)
       !> The motion, with alpha at the end of the step
       type(motion_t), intent(in) :: self
-      type(plate_t), intent(in) :: plate
+      type(target_t), intent(in) :: plate
       !> Step, >= 2
       integer, intent(in) :: n
       !> alpha at its start [m/(N s)]

@@ -23,6 +23,7 @@ module vcor_solver_direct_product
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_convolution, only : lengthen, second_term_t
+   use vcor_solver_direct_contacts, only : solve_contacts
    use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, find_peaks, &
       parabola, set_shares
    use vcor_solver_direct_motion, only : motion_t
@@ -98,6 +99,10 @@ contains
       integer :: level, room
       logical :: crude
 
+      if (impact%target%structure%exists()) then
+         call solve_contacts(self%settings, impact, trajectory, error)
+         return
+      end if
       associate (time_step => self%settings%time_step, end_time => self%settings%end_time, &
                  accuracy => self%settings%accuracy)
          if (time_step > 0.0_wp) then
@@ -219,12 +224,12 @@ contains
       run%second_coefficient = settings%second_coefficient
       run%viscosity = impact%kernel_viscosity()
       run%speed = impact%velocity
-      run%motion%alpha = impact%plate%alpha(0.0_wp)
+      run%motion%alpha = impact%target%alpha(0.0_wp)
       call make_room(run, impact, dt, room, trajectory)
       trajectory%state(:, 0) = 0.0_wp
       trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
       trajectory%state(col_force, 0) = impact%first_force()
-      trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
+      trajectory%state(col_plate_velocity, 0) = impact%target%alpha(0.0_wp)*impact%first_force()
       trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
       crude = .false.
       work = 0.0_wp

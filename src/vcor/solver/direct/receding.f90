@@ -108,7 +108,8 @@ contains
       if (.not. self%regrown) then
          call follow_edge(self, impact, kernel, n, du, indentation, velocity)
          ! on a fixed plate without gravity s' only falls, and growth is a rounding error
-         if (.not. (self%regrows .and. (impact%plate%moves() .or. impact%gravity > 0.0_wp))) return
+         if (.not. (self%regrows &
+             .and. (impact%target%yields() .or. impact%gravity > 0.0_wp))) return
          self%regrown = .true.
          self%smallest = last(2)
          call self%springs%start(impact, kernel, n - 1, self%turn, self%s, self%ds)

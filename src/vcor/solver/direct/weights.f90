@@ -1,7 +1,7 @@
 !> Weights W_i of the sums over the past in product integration, F_n = sum_j W_{n-j} du_j with
 !> du_j = u_j - u_{j-1}: u' is linear over each step and the kernel times u' is integrated exactly
 module vcor_solver_direct_weights
-   use vcor_impact_plate, only : plate_t
+   use vcor_impact_target, only : target_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
@@ -90,7 +90,7 @@ contains
 
    !> Weights W_i of the memory psi of a hereditary plate
    pure function memory_weights(plate, dt, n) result(weight)
-      type(plate_t), intent(in) :: plate
+      type(target_t), intent(in) :: plate
       !> Time step [s], > 0
       real(wp), intent(in) :: dt
       !> Number of weights

@@ -1,9 +1,11 @@
 !> The equations of a panel, in one form for a contact that grows and one that recedes
 !>
 !> The forces F in a panel reduce the indentation by R F and its rate by Q F; H is the integration
-!> matrix of the panel, P(H) the response of a plate with memory:
+!> matrix of the panel, P(H) the response of a plate with memory or of a structure, C a flexibility
+!> that follows the force at once, and ' the derivative of the polynomial:
 !>
-!>     s = s_n + g - R F,    R = H^2/m + alpha H + P H^2,    Q = H/m + alpha + alpha' H + P H
+!>     s = s_n + g - R F,    R = H^2/m + alpha H + P H^2 + C,
+!>     s' = .. - Q F,        Q = H/m + alpha + alpha' H + P H + C '
 !>
 !> The hereditary integral of x = u or s in the panel follows from its lags p_k:
 !>
@@ -18,11 +20,13 @@
 !>     recedes:  x = N, f = F(N),        M = S R + eta Q,  r = S g + b + eta g'
 module vcor_solver_ive_equations
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_structure, only : vibration_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : apply, width
    use vcor_numeric_radau_rule, only : closing, map_t, rule_t, slots
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_lags, only : advance_lags, find_response, sums_t
+   use vcor_solver_ive_modes, only : add_modes, advance_modes, rate_at_start
    use vcor_solver_ive_panel, only : panel_t, state_t, step_t
    implicit none
    private
@@ -69,8 +73,8 @@ module vcor_solver_ive_equations
       type(map_t), pointer :: map => null()
       !> Whether the force is zero at the end of the panel, and the last stage has no weight
       logical :: closes
-      !> Whether the contact recedes, whether alpha varies in the panel, and whether the plate has a
-      !> memory
+      !> Whether the contact recedes, whether alpha varies in the panel, and whether the target has
+      !> a memory or modes
       logical :: recedes, varies, has_memory
       !> Times of the stages since the start [s]
       real(wp) :: elapsed(width)
@@ -79,11 +83,14 @@ module vcor_solver_ive_equations
       complex(wp) :: eigenvalue(slots)
       !> S [N/m^1.5], R [s2/kg] and R S; without the factor H/m + alpha if alpha varies
       complex(wp) :: stiffness(slots), yield(slots), whole(slots)
-      !> Velocity of the plate per impulse, from its memory, P [1/kg], and that from the memory of
-      !> earlier panels [m/s]
+      !> Velocity of the target per impulse, P [1/kg], and that from forces in earlier panels [m/s]
       complex(wp) :: plate(slots), past(slots)
       !> alpha [m/(N s)], and its rate where it is needed [m/(N s2)]
       real(wp) :: alpha(width), alpha_rate(width)
+      !> Flexibility C [m/N], and the derivative of a polynomial at the stages, its value at the
+      !> start first [1/s], set if there is one
+      real(wp) :: residual = 0.0_wp
+      real(wp) :: derivative(width, 0:width)
       !> Viscosity of the dashpot of a receding contact [N s/m^1.5], and 1/m [1/kg]
       real(wp) :: viscosity, inverse_mass
       !> b [N], or [N/m^0.5]: coefficients of the eigenvectors
@@ -163,9 +170,11 @@ contains
       e%varies = .false.
       e%alpha = 0.0_wp
       e%alpha_rate = 0.0_wp
-      associate (start => self%start, plate => self%impact%plate)
-         e%has_memory = plate%hereditary()
-         if (e%has_memory) then
+      associate (start => self%start, plate => self%impact%target)
+         e%has_memory = plate%has_memory()
+         if (allocated(self%sums%vibration)) then
+            call add_structure(self, self%sums%vibration, e)
+         else if (e%has_memory) then
             e%alpha(:n) = self%sums%plate%viscosity
             call find_response(self%sums%plate, start%plate_lag, e%eigenvalue, e%plate, e%past)
             e%past = e%past*e%map%left_one
@@ -178,10 +187,34 @@ contains
          end if
          e%yield = e%eigenvalue
          if (.not. e%varies) e%yield = e%yield*(e%inverse_mass*e%eigenvalue + e%alpha(1))
-         if (e%has_memory) e%yield = e%yield + e%plate*e%eigenvalue**2
+         if (e%has_memory) e%yield = e%yield + e%plate*e%eigenvalue**2 + e%residual
          self%panel%alpha(1:) = e%alpha
       end associate
    end subroutine add_plate
+
+   !> Add a struck structure
+   subroutine add_structure(self, vibration, e)
+      class(motion_t), intent(in) :: self
+      type(vibration_t), intent(in) :: vibration
+      type(equations_t), intent(inout) :: e
+
+      integer :: j
+
+      associate (n => self%rule%stages, start => self%start, panel => self%panel)
+         e%plate = 0.0_wp
+         e%past = 0.0_wp
+         call add_modes(vibration, start%modes, e%eigenvalue, e%plate, e%past)
+         e%past = e%past*e%map%left_one
+         e%residual = vibration%residual
+         e%gain = e%gain - e%map%compose(e%eigenvalue*e%past) + e%residual*start%force
+         e%derivative = 0.0_wp
+         if (.not. e%residual > 0.0_wp) return
+         do j = 1, n
+            if (panel%pace(self%rule%point(j)) > 0.0_wp) &
+               e%derivative(j, :) = self%rule%derivative(j, :)/panel%pace(self%rule%point(j))
+         end do
+      end associate
+   end subroutine add_structure
 
    !> Add the dashpot of a receding contact: eta s' in the condition
    subroutine add_dashpot(self, velocity, e)
@@ -190,9 +223,11 @@ contains
       real(wp), intent(in) :: velocity
       type(equations_t), intent(inout) :: e
 
-      associate (n => self%rule%stages, plate => self%impact%plate)
+      associate (n => self%rule%stages, plate => self%impact%target)
          e%right = e%right + e%viscosity*(velocity + self%impact%gravity*e%elapsed)
-         if (plate%hereditary()) e%right = e%right - e%viscosity*e%map%compose(e%past)
+         if (e%has_memory) e%right = e%right - e%viscosity*e%map%compose(e%past)
+         if (e%residual > 0.0_wp) &
+            e%right = e%right - e%viscosity*e%residual*self%start%force*e%derivative(:, 0)
          if (.not. e%varies) return
          e%alpha_rate(:n) = plate%alpha_rate(self%panel%time(1:n), e%alpha(:n))
          e%right = e%right - e%viscosity*e%alpha_rate*self%start%impulse
@@ -233,6 +268,8 @@ contains
       impulse = apply(self%h, force)
       lost = self%alpha*force + (self%inverse_mass + self%alpha_rate)*impulse
       if (self%has_memory) lost = lost + self%map%compose(self%plate*self%map%decompose(impulse))
+      if (self%residual > 0.0_wp) &
+         lost = lost + self%residual*apply(self%derivative(:, 1:), force)
    end function lost_velocity
 
    !> M f
@@ -330,6 +367,11 @@ contains
             if (e%closes) panel%force(self%rule%stages) = 0.0_wp
             force = e%map%decompose(panel%force(1:))
             panel%indentation(1:) = panel%indentation(0) + e%gain - e%lost_indentation(force)
+            ! the eigenvalue 0 of a closing panel is left out, for which R is C; the force ends
+            ! there
+            if (e%closes) panel%indentation(self%rule%stages) = &
+               panel%indentation(self%rule%stages) &
+               + e%residual*sum(real(e%map%last*force, wp))
          else
             call self%evaluate(e)
             force = e%stiffness*e%map%decompose(e%f) + e%memory
@@ -352,8 +394,15 @@ contains
       associate (n => self%rule%stages, panel => self%panel, start => self%start, &
                  contact => self%sums%contact, plate => self%sums%plate, &
                  time => self%panel%step%duration)
-         if (self%impact%plate%hereditary()) panel%drift(n) = self%rule%settling%total( &
-            plate%moduli, plate%rates, time, start%plate_lag, panel%force(1:n))
+         if (self%impact%target%hereditary()) then
+            panel%drift(n) = self%rule%settling%total(plate%moduli, plate%rates, time, &
+               start%plate_lag, panel%force(1:n))
+         else if (allocated(self%sums%vibration)) then
+            associate (map => self%rule%map(panel%step%kind))
+               panel%drift(n) = panel%drift(n) + rate_at_start(start%modes) &
+                  *(1.0_wp - sum(real(map%last*map%left_one, wp)))
+            end associate
+         end if
          panel%t1(n) = sum(self%rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
          call self%find_velocity()
          panel%condition(n) = contact%equilibrium*panel%indentation(n) &
@@ -362,8 +411,8 @@ contains
       end associate
    end subroutine set_end
 
-   !> Velocity of the plate at a stage of the panel: U' = alpha F + alpha' I, or with memory
-   !> alpha F + Z
+   !> Velocity of the target at a stage of the panel: U' = alpha F + alpha' I, or with memory
+   !> alpha F + Z + C F'
    pure function plate_velocity_at(self, j) result(velocity)
       class(motion_t), intent(in) :: self
       !> Stage
@@ -373,8 +422,11 @@ contains
 
       associate (panel => self%panel)
          velocity = panel%alpha(j)*panel%force(j) + panel%drift(j)
-         if (.not. self%impact%plate%hereditary()) velocity = velocity + panel%impulse(j) &
-            *self%impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
+         if (.not. self%impact%target%has_memory()) velocity = velocity + panel%impulse(j) &
+            *self%impact%target%alpha_rate(panel%time(j), panel%alpha(j))
+         if (.not. allocated(self%sums%vibration)) return
+         if (self%sums%vibration%residual > 0.0_wp) velocity = velocity &
+            + self%sums%vibration%residual*panel%rate_at(self%rule, panel%force, j)
       end associate
    end function plate_velocity_at
 
@@ -417,19 +469,32 @@ contains
    pure subroutine advance(self)
       class(motion_t), intent(inout) :: self
 
-      real(wp) :: gained(width)
+      real(wp), dimension(width) :: gained, weight
+      real(wp), allocatable :: lag(:)
 
       associate (panel => self%panel, start => self%start, &
                  map => self%rule%map(self%panel%step%kind), time => self%panel%step%duration)
          gained = panel%indentation(1:) - start%indentation
          if (self%recedes) then
+            lag = start%lag
             call advance_lags(map, time, self%sums%contact, gained, start%lag)
+            ! the eigenvalue 0 of a closing panel: a structure may strike again
+            if (allocated(self%sums%vibration)) start%lag = start%lag &
+               + lag*(1.0_wp - sum(real(map%last*map%left_one, wp)))
          else
             gained = panel%u(1:) - start%u
             call advance_lags(map, time, self%sums%contact, gained, start%lag)
          end if
-         if (self%impact%plate%hereditary()) call advance_lags(map, time, self%sums%plate, &
+         if (self%impact%target%hereditary()) call advance_lags(map, time, self%sums%plate, &
             panel%impulse(1:) - start%impulse, start%plate_lag)
+         if (allocated(self%sums%vibration)) then
+            gained = panel%impulse(1:) - start%impulse
+            weight = self%rule%weight
+            weight(:panel%stages) = weight(:panel%stages) &
+               *panel%pace(self%rule%point(1:panel%stages))
+            call advance_modes(map, time, self%sums%vibration, gained, weight, start%modes, &
+               start%lost)
+         end if
          call panel%move_to_end(start)
       end associate
    end subroutine advance

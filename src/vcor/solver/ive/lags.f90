@@ -5,6 +5,7 @@
 !> so a mode costs a few operations for each of them, however stiff it is. A kernel may have a
 !> hundred modes: the loops over the eigenvalues are innermost and in real numbers.
 module vcor_solver_ive_lags
+   use vcor_impact_structure, only : vibration_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_radau_rule, only : map_t, slots
@@ -19,6 +20,8 @@ module vcor_solver_ive_lags
       type(exponential_sum_t) :: contact
       !> Memory of a hereditary plate: weights w_j and rates l_j, and the viscosity alpha [m/(N s)]
       type(exponential_sum_t) :: plate
+      !> Modes of a struck structure, otherwise unallocated
+      type(vibration_t), allocatable :: vibration
    end type sums_t
 
 contains

@@ -12,10 +12,12 @@
 module vcor_solver_ive_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : contact_separated, refuse_growth, trajectory_t
-   use vcor_kinds, only : finest_accuracy, wp
+   use vcor_impact_trajectory, only : col_indentation, col_plate_velocity, col_time, &
+      contact_separated, refuse_growth, trajectory_t
+   use vcor_kinds, only : finest_accuracy, unset, wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t, closing, doubling, linear, opening, rule_t
+   use vcor_solver_direct_contacts, only : comes_back
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_control, only : length_factor
    use vcor_solver_ive_course, only : at_branch, course_t, of_cor, of_cor_sphere, of_time
@@ -104,6 +106,7 @@ contains
          if (over .or. course%reaches_end_time) return
          if (course%ends) then
             trajectory%status = contact_separated
+            if (allocated(sums%vibration)) call judge_separation(course%fine, trajectory)
             errors = course%last_errors
             return
          end if
@@ -113,6 +116,31 @@ contains
       if (over) return
       call raise_no_end(course, error)
    end subroutine follow
+
+   !> Find out whether the first separation from a structure is the last, and what energy is left in
+   !> it
+   subroutine judge_separation(motion, trajectory)
+      !> The solution, advanced to the end of the contact
+      type(motion_t), intent(in) :: motion
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: w
+
+      associate (vibration => motion%sums%vibration, modes => motion%start%modes, &
+                 last => trajectory%state(:, trajectory%last))
+         trajectory%first_end = last(col_time)
+         w = last(col_indentation)
+         if (.not. motion%recedes) w = motion%impact%law%u(w)
+         call comes_back(motion%impact, motion%sums%contact, vibration, modes, last, w, &
+            motion%start%lag, trajectory%returns)
+         trajectory%rigid_velocity = vibration%rigid_velocity(modes)
+         trajectory%structure_energy = unset
+         ! collocation damps modes that are fast compared with a panel
+         if (size(vibration%rate) == 0) trajectory%structure_energy = &
+            sum(trajectory%share(0:trajectory%last) &
+            *trajectory%state(col_plate_velocity, 0:trajectory%last)) - motion%start%lost
+      end associate
+   end subroutine judge_separation
 
    !> Start at first contact
    subroutine start(self, rules, bridge, impact, sums, approach, accuracy, share, time_scale, &
@@ -173,11 +201,16 @@ contains
          ! at least rounding in products with a matrix
          motion%tolerance = max(width**2*epsilon(1.0_wp), ive_leftover*self%control%tolerance)
          associate (now => motion%start)
-            now%alpha = impact%plate%alpha(0.0_wp)
+            now%alpha = impact%target%alpha(0.0_wp)
             now%force = impact%first_force()
+            if (allocated(sums%vibration)) then
+               now%modes = sums%vibration%rest()
+               ! a flexibility takes up the velocity at first
+               if (sums%vibration%residual > 0.0_wp) now%force = 0.0_wp
+            end if
             now%velocity = impact%velocity - now%alpha*now%force
             allocate (now%lag(size(sums%contact%rates)), source=0.0_wp)
-            if (impact%plate%hereditary()) &
+            if (impact%target%hereditary()) &
                allocate (now%plate_lag(size(sums%plate%rates)), source=0.0_wp)
          end associate
       end subroutine start_motion
@@ -553,7 +586,12 @@ contains
          if (fine%impact%law%receding .and. .not. fine%recedes) call fine%approach%add( &
             fine%rule, fine%sums%contact%rates, panel)
          call fine%advance()
-         call self%coarse%advance()
+         if (allocated(fine%sums%vibration)) then
+            ! what the two differ by in fast modes would part them, however well these average out
+            self%coarse%start = fine%start
+         else
+            call self%coarse%advance()
+         end if
          ! panels that creep to the place where the contact grows have not passed it
          if (fine%start%time >= self%control%growth_end) self%control%growths = 0
       end associate

@@ -1,5 +1,6 @@
 !> A panel of time: its step, the state at its start, and the solution on it
 module vcor_solver_ive_panel
+   use vcor_impact_structure, only : state_of_modes_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : rule_t
@@ -30,7 +31,7 @@ module vcor_solver_ive_panel
       real(wp) :: impulse = 0.0_wp, second_impulse = 0.0_wp
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha = 0.0_wp
-      !> Velocity Z of the plate by its memory [m/s], U' = alpha F + Z
+      !> Velocity Z of the target by its memory or modes [m/s], U' = alpha F + Z + C F'
       real(wp) :: drift = 0.0_wp
       !> Condition N of a receding contact [N/m^0.5], and its time t1 [s]
       real(wp) :: condition = 0.0_wp, t1 = 0.0_wp
@@ -38,6 +39,10 @@ module vcor_solver_ive_panel
       real(wp), allocatable :: lag(:)
       !> Lags of the impulse in the plate [N s], shape (modes of the plate)
       real(wp), allocatable :: plate_lag(:)
+      !> Modes of a struck structure
+      type(state_of_modes_t) :: modes
+      !> Energy that their dampings have taken [J]
+      real(wp) :: lost = 0.0_wp
    end type state_t
 
    !> Solution on a panel; index 0 is its start. Condition and t1 are set while the contact recedes
@@ -58,7 +63,7 @@ module vcor_solver_ive_panel
       real(wp) :: impulse(0:width), second_impulse(0:width)
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(0:width)
-      !> Velocity of the plate by its memory [m/s]
+      !> Velocity of the target by its memory or modes [m/s]
       real(wp) :: drift(0:width)
       !> Condition N of a receding contact [N/m^0.5], and its time t1 [s]
       real(wp) :: condition(0:width), t1(0:width)
@@ -69,6 +74,7 @@ module vcor_solver_ive_panel
       procedure :: theta
       procedure :: pace
       procedure :: slope_at_end
+      procedure :: rate_at
       procedure :: end_rates
       procedure :: move_to_end
    end type panel_t
@@ -135,6 +141,24 @@ contains
 
       slope = sum(rule%derivative(rule%stages, :)*value)/self%pace(1.0_wp)
    end function slope_at_end
+
+   !> Rate of a value at a stage, by its polynomial; 0 where time stands still
+   pure function rate_at(self, rule, value, j) result(rate)
+      class(panel_t), intent(in) :: self
+      type(rule_t), intent(in) :: rule
+      !> Values at the points
+      real(wp), intent(in) :: value(0:width)
+      !> Stage
+      integer, intent(in) :: j
+      !> Rate [1/s]
+      real(wp) :: rate
+
+      real(wp) :: pace
+
+      rate = 0.0_wp
+      pace = self%pace(rule%point(j))
+      if (pace > 0.0_wp) rate = sum(rule%derivative(j, :)*value)/pace
+   end function rate_at
 
    !> First and second time derivative of a value at the end of a panel, by its polynomial
    pure subroutine end_rates(self, rule, value, first, second)

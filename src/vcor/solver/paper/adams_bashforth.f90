@@ -238,7 +238,7 @@ contains
       call product%solve(impact, trajectory, error)
       damping = 0.0_wp
       do i = 1, trajectory%last
-         damping = max(damping, impact%plate%alpha(trajectory%state(col_time, i)) &
+         damping = max(damping, impact%target%alpha(trajectory%state(col_time, i)) &
             *impact%law%slope(trajectory%state(col_indentation, i)))
       end do
 

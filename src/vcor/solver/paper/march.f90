@@ -115,7 +115,7 @@ contains
       real(wp) :: limit
 
       limit = damping_limit(dt, kernel_values(impact, dt, kernel_terms + 1), settings%form(1:1), &
-         share_of_newest(settings), impact%plate%frozen())
+         share_of_newest(settings), impact%target%frozen())
    end function stable_damping
 
    !> One run with a given step
@@ -156,7 +156,7 @@ contains
       run%velocity(1) = impact%velocity
       t = merge(dt, 0.0_wp, capped(impact))
       run%first_kernel = impact%kernel(t)
-      run%first_alpha = impact%plate%alpha(t)
+      run%first_alpha = impact%target%alpha(t)
       call make_room(run, settings, impact, room, trajectory)
       trajectory%state(:, 0) = 0.0_wp
       trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
@@ -328,11 +328,11 @@ contains
       integer :: p
 
       associate (dt => run%dt, share => run%share, force => run%force(1))
-         alpha = impact%plate%alpha(dt*real(n, wp))
-         alpha_rate = impact%plate%alpha_rate(dt*real(n, wp), alpha)
+         alpha = impact%target%alpha(dt*real(n, wp))
+         alpha_rate = impact%target%alpha_rate(dt*real(n, wp), alpha)
          run%damping = alpha*impact%law%slope(run%s)
          run%impulse = run%impulse + dt*(share*force + (1.0_wp - share)*run%force(2))
-         if (impact%plate%frozen()) then
+         if (impact%target%frozen()) then
             p = min(n + 1, first_points)
             acceleration = alpha*sum(first_difference(:, p)*run%force)/dt
             ! U' = int alpha F' dt = alpha F - int alpha' F dt
@@ -402,9 +402,9 @@ contains
 
       node = matmul(window(:, 0:last), lagrange(last, upper))
       node(col_force) = 0.0_wp
-      if (.not. impact%plate%frozen()) then
-         node(col_plate) = impact%plate%alpha(node(col_time))*node(col_impulse)
-         node(col_plate_velocity) = impact%plate%alpha_rate(node(col_time))*node(col_impulse)
+      if (.not. impact%target%frozen()) then
+         node(col_plate) = impact%target%alpha(node(col_time))*node(col_impulse)
+         node(col_plate_velocity) = impact%target%alpha_rate(node(col_time))*node(col_impulse)
       end if
       node(col_sphere) = node(col_indentation) + node(col_plate)
       node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass

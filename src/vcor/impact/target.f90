@@ -1,18 +1,20 @@
-!> Plate that carries energy of the impact away in waves: its deflection U under the contact force
+!> What lies behind the contact: the deflection U of the struck point under the contact force
 !>
-!> A thin plate has U = alpha I with Zener's alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2), Eq. (3);
-!> a hereditary one has a memory (`vcor_impact_memory`). Waves in a plate of any thickness belong
-!> to the face, `vcor_impact_face`.
-module vcor_impact_plate
+!> A thin infinite plate has U = alpha I with Zener's alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2),
+!> Eq. (3); a hereditary one has a memory (`vcor_impact_memory`). A structure with edges, supports
+!> or a finite mass has modes (`vcor_impact_structure`). Waves in a plate of any thickness belong to
+!> the face, `vcor_impact_face`.
+module vcor_impact_target
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_memory, only : memory_t, new_memory
+   use vcor_impact_structure, only : structure_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: plate_t, new_plate
+   public :: target_t, new_plate, new_target
    public :: waves_none, waves_constant, waves_relaxing, waves_frozen, waves_hereditary
 
    !> Plate models: no motion, U = 0
@@ -30,19 +32,20 @@ module vcor_impact_plate
    !> yields at once, but alpha, its rate and their products stay finite
    real(wp), parameter :: least = 1.0e-60_wp
 
-   !> Deflection U of the plate's mid-plane under the impulse I of the contact force
-   type :: plate_t
-      private
+   !> Deflection U of the struck point, of a plate that of its mid-plane, under the contact force
+   type :: target_t
+      !> Modes of a structure in place of an infinite plate
+      type(structure_t) :: structure
       !> One of the `waves_*` constants
-      integer :: waves = waves_none
+      integer, private :: waves = waves_none
       !> sqrt(3 rho (1 - nu^2))/(16 rho h^2), so that alpha = coefficient/sqrt(E_b) [Pa^0.5 m/(N s)]
-      real(wp) :: coefficient = 0.0_wp
+      real(wp), private :: coefficient = 0.0_wp
       !> alpha(0) [m/(N s)]
-      real(wp) :: initial = 0.0_wp
+      real(wp), private :: initial = 0.0_wp
       !> Material of a plate with variable alpha, otherwise unallocated
-      class(material_t), allocatable :: material
+      class(material_t), allocatable, private :: material
       !> Memory of a hereditary plate, otherwise unallocated
-      type(memory_t), allocatable :: memory
+      type(memory_t), allocatable, private :: memory
    contains
       procedure :: moves
       procedure :: alpha
@@ -52,23 +55,41 @@ module vcor_impact_plate
       procedure :: frozen
       procedure :: hereditary
       procedure :: drifts
+      procedure :: has_memory
+      procedure :: yields
       procedure :: response
       procedure :: memory_integral
-   end type plate_t
+   end type target_t
 
 contains
 
    !> Whether the plate moves: it has waves and is not rigid
    pure function moves(self)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       logical :: moves
 
       moves = self%coefficient > 0.0_wp
    end function moves
 
+   !> Whether the struck point moves: that of a plate with waves, or of a structure
+   pure function yields(self)
+      class(target_t), intent(in) :: self
+      logical :: yields
+
+      yields = self%moves() .or. self%structure%exists()
+   end function yields
+
+   !> Build the target of a structure
+   pure subroutine new_target(self, structure)
+      type(target_t), intent(out) :: self
+      type(structure_t), intent(in) :: structure
+
+      self%structure = structure
+   end subroutine new_target
+
    !> Build a plate
    pure subroutine new_plate(self, material, half_thickness, waves, error)
-      type(plate_t), intent(out) :: self
+      type(target_t), intent(out) :: self
       !> Its material; a rigid plate does not move
       class(material_t), intent(in) :: material
       !> Half thickness h [m], > 0 if the plate moves
@@ -126,7 +147,7 @@ contains
 
    !> Zener's plate parameter alpha(t), Eq. (3)
    elemental function alpha(self, t) result(value)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> Time since first contact [s], t >= 0
       real(wp), intent(in) :: t
       !> Deflection per impulse [m/(N s)]
@@ -141,7 +162,7 @@ contains
 
    !> Plate parameter alpha at many times
    pure subroutine alpha_at(self, t, value)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> Times since first contact [s], t >= 0
       real(wp), intent(in) :: t(:)
       !> Deflection per impulse [m/(N s)], same shape
@@ -162,7 +183,7 @@ contains
    !> Plate parameter after a time: alpha, for a plate with memory the velocity under a constant
    !> force, over that force
    elemental function alpha_after(self, t) result(value)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
       !> Deflection per impulse [m/(N s)]
@@ -174,7 +195,7 @@ contains
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'
    elemental function frozen(self)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> False for a constant alpha, for which both are the same
       logical :: frozen
 
@@ -183,16 +204,24 @@ contains
 
    !> Whether the plate has a memory: U' = alpha F + int psi(t - x) F(x) dx
    elemental function hereditary(self)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> False for an elastic thin plate
       logical :: hereditary
 
       hereditary = allocated(self%memory)
    end function hereditary
 
+   !> Whether U' depends on forces in the past: the target has a memory or modes
+   elemental function has_memory(self)
+      class(target_t), intent(in) :: self
+      logical :: has_memory
+
+      has_memory = allocated(self%memory) .or. self%structure%exists()
+   end function has_memory
+
    !> Whether U' - alpha F is a variable of its own and not alpha' I
    elemental function drifts(self)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       logical :: drifts
 
       drifts = self%frozen() .or. self%hereditary()
@@ -202,7 +231,7 @@ contains
    !> F(x) dx with psi = sum_k w_k exp(-l_k t)
    pure subroutine response(self, window, accuracy, terms)
       !> The plate, with memory
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
@@ -217,7 +246,7 @@ contains
    !> Integral from 0 to t of the memory psi of a hereditary plate
    elemental function memory_integral(self, t) result(value)
       !> The plate, a hereditary one
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> Upper limit [s], >= 0
       real(wp), intent(in) :: t
       !> Integral [m/(N s)]
@@ -228,7 +257,7 @@ contains
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b), with 1/E_b = (alpha/coefficient)^2
    elemental function alpha_rate(self, t, alpha) result(value)
-      class(plate_t), intent(in) :: self
+      class(target_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
       !> Plate parameter at that time if known [m/(N s)]
@@ -248,4 +277,4 @@ contains
       value = -0.5_wp*known*(self%material%rate(t)*(known/self%coefficient)**2)
    end function alpha_rate
 
-end module vcor_impact_plate
+end module vcor_impact_target
