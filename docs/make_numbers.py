@@ -20,8 +20,6 @@ NUMBER = r"[+-]?\d+(?:\.\d+)?(?:E[+-]\d+)?"
 
 def computed(entries):
     """The value of each entry, in the order of the file."""
-    # the verdict of an impact is a word on its page
-    warnings.simplefilter("ignore", vcor.ValidityWarning)
     found = {}
     for name, entry in entries.items():
         if "from" in entry:

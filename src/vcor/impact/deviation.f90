@@ -169,7 +169,7 @@ contains
       ! the exponents stay in the right half plane
       decay = min(-log(floor_of(outcome%cor_sphere)), 2.0_wp)
       alpha = 0.0_wp
-      if (impact%plate%moves() .and. .not. impact%plate%hereditary()) &
+      if (impact%target%moves() .and. .not. impact%target%hereditary()) &
          alpha = mean_alpha(impact, time)
       do i = 1, size(exponents)
          rate = exponents(i)/time
@@ -180,9 +180,9 @@ contains
          extra = extra/(modulus*plate%plane_strain_factor())
          losses%real_face = losses%real_face + real(amplitudes(i)*rate*extra, wp)
          losses%reaction = losses%reaction + real(amplitudes(i)*extra, wp)
-         if (.not. impact%plate%moves()) cycle
+         if (.not. impact%target%moves()) cycle
          thin = 1.0_wp/s
-         if (impact%plate%hereditary()) then
+         if (impact%target%hereditary()) then
             thin = thin*sqrt(3.0_wp/(plate%density()*plate%plane_strain_factor()*modulus)) &
                /(4.0_wp*thickness**2)
             alpha = 1.0_wp
@@ -234,7 +234,7 @@ contains
          0.54415161_wp, 0.21533440_wp, 0.00986113_wp]
       real(wp) :: values(6)
 
-      values = impact%plate%alpha(node*time)
+      values = impact%target%alpha(node*time)
       alpha = [sum(loss*values), sum(reaction*values)]
    end function mean_alpha
 

@@ -117,7 +117,7 @@ contains
       type(impact_t), intent(in) :: impact
       logical :: is_lighter
 
-      is_lighter = self%base == base_free .and. (impact%plate%moves() .or. self%has_body) &
+      is_lighter = self%base == base_free .and. (impact%target%moves() .or. self%has_body) &
          .and. .not. (ieee_is_nan(self%radius) .or. ieee_is_nan(self%thickness))
       if (is_lighter) is_lighter = pi*self%radius**2*self%thickness*self%density < impact%mass
    end function is_lighter
