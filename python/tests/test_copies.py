@@ -273,6 +273,25 @@ def test_materials_and_sweeps_are_replaced_in_a_copy():
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("group", PAIRS)
+def test_a_setting_of_the_shell_is_one_of_the_case(tmp_path, group):
+    """--set of either key of a quantity, over either in the file: all of the screen is equal."""
+    keys = {name: f"{pair[0][0]} = {pair[0][1]!r}" for name, pair in PAIRS.items()}
+    for given, low, _ in PAIRS[group]:
+        for key, _, high in PAIRS[group]:
+            keys[group] = f"{given} = {low!r}"
+            text = BASE.format(**keys, mats=STEEL + MATERIALS[2], sweep="")
+            (tmp_path / "case.nml").write_text(text)
+            case = vcor.read(tmp_path / "case.nml")
+            case[f"{group}.{key}"] = high
+            case.save(tmp_path / "saved.nml")
+            shell = screens(tmp_path, ["case.nml", "--set", f"{group}.{key}={high!r}"])
+            assert shell == screens(tmp_path, ["saved.nml"])
+            assert case.solve()["cor"] == vcor.read(tmp_path / "saved.nml").solve()["cor"]
+            assert any("e_a" in line for line in shell[0])
+
+
+@pytest.mark.filterwarnings("ignore")
 def test_copies_are_the_case(tmp_path, pool):
     solved, cases, expected = [], [], []
     for seed in range(COUNT):

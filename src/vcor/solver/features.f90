@@ -7,7 +7,7 @@
 !> which value of a key is a method's own.
 !>
 !> A new feature needs a row in `features`, its exclusions in `refusals`, a line in `features_of` of
-!> `vcor_solver`, which sees it in an impact, and one in `features_of_case` of
+!> `vcor_solver_type`, which sees it in an impact, and one in `features_of_case` of
 !> `vcor_case_mechanics`, which sees it in the keys of a case.
 module vcor_solver_features
    use vcor_error, only : error_input, error_t, raise
