@@ -4,7 +4,9 @@
     verdicts.py [--seed N] [--count 300] [--only CLASS,...] [--worst N]
 
 Radius 0.5 to 20 mm, velocity 0.1 to 20 m/s, thickness 0.3 to 20 radii, all log-uniform; the materials of
-examples/materials, and power laws and Prony series with loss tangents up to 1 at the frequency of the contact.
+examples/materials, and power laws and Prony series with loss tangents up to 1 at the frequency of the contact. Other
+shapes are cones, punches, bodies of revolution and true spheres of the same mass, on plates and half spaces, half of
+them with their weight.
 Impacts whose cor_sphere, as computed or exact, is below 0.02 are drawn again. Only `cor_deviation` is judged here,
 without the measures of other things (contact_ratio, extent). --worst prints the impacts of each class that
 are farthest from their prediction. Takes about ten minutes. Needs the Python package (PYTHONPATH=python/src and
@@ -36,6 +38,7 @@ CLASSES = {
     "none, half spaces": ("none", None, None),
     "none, layers": ("none", None, None),
     "pairs of beads": ("none", None, None),
+    "other shapes": ("none", None, None),
 }
 #: Smallest restitution that is drawn, and largest loss tangent
 LEAST, LOSSY = 0.02, 1.0
@@ -63,9 +66,15 @@ class Impact:
     exact: float
     predicted: float
 
+    def excess(self, limit: tuple[float, float]) -> float:
+        """Difference to the exact restitution over a limit, which is a share of the computed one."""
+        return abs(self.exact - self.computed) / max(
+            limit[0] * self.computed, limit[1]
+        )
+
     def is_within(self, limit: tuple[float, float]) -> bool:
         """Whether the exact restitution is within a limit."""
-        return abs(self.exact - self.computed) <= max(limit[0] * self.exact, limit[1])
+        return self.excess(limit) <= 1.0
 
     def level(self) -> str:
         """The verdict by the predicted change alone."""
@@ -124,12 +133,29 @@ def rigid(rng: np.random.Generator) -> Material:
     return Material(f"model = 'rigid', density = {density}", density, rigid=True)
 
 
+def shape(rng: np.random.Generator, radius: float, density: float) -> str:
+    """A body that is not a paraboloid, as heavy as the ball of this radius and about as blunt."""
+    name = rng.choice(["cone", "punch", "power", "true_sphere"])
+    if name == "true_sphere":
+        return f"shape = 'true_sphere', radius = {radius:.6e}"
+    mass = 4 / 3 * math.pi * radius**3 * density
+    if name == "cone":
+        key = f"half_angle = {rng.uniform(45, 85):.3f}"
+    elif name == "punch":
+        key = f"punch_radius = {radius * rng.uniform(0.05, 0.5):.6e}"
+    else:
+        power = rng.uniform(1.2, 6)
+        key = f"profile_power = {power:.4f}, profile_coefficient = {0.5 * radius ** (1 - power):.6e}"
+    return f"shape = '{name}', mass = {mass:.6e}, {key}"
+
+
 def draw(name: str, rng: np.random.Generator, known: list[Material]) -> tuple[str, str]:
     """An impact of a class: its case with the mechanics of the class, and with exact ones."""
 
     def any_of() -> Material:
         return known[rng.integers(len(known))] if rng.random() < 0.5 else relaxing(rng)
 
+    gravity, body = "0", ""
     radius, velocity = 5e-4 * 40 ** rng.random(), 0.1 * 200 ** rng.random()
     thickness = radius * 0.3 * (20 / 0.3) ** rng.random()
     hard = [one for one in known if one.elastic]
@@ -162,19 +188,26 @@ def draw(name: str, rng: np.random.Generator, known: list[Material]) -> tuple[st
         masses = ball.density * radius**3, plate.density * other**3
         of_plate = f"surface_radius = {other:.6e}"
         mass = f", mass = {4 / 3 * math.pi * masses[0] * masses[1] / sum(masses):.6e}"
+    elif name == "other shapes":
+        body = shape(rng, radius, ball.density)
+        gravity = rng.choice(["0", "9.81"])
+        if rng.random() < 0.5:
+            of_plate = ""
 
     def text(waves: str, law: str, pair: str) -> str:
         return (
-            f"&impact velocity = {velocity:.6e}, gravity = 0 /\n"
-            f"&sphere radius = {radius:.6e}, material = 'ball'{mass} /\n"
+            f"&impact velocity = {velocity:.6e}, gravity = {gravity} /\n"
+            f"&sphere {body or f'radius = {radius:.6e}'}, material = 'ball'{mass} /\n"
             f"&plate material = 'plate', waves = '{waves}'{', ' if of_plate else ''}{of_plate} /\n"
             f"&contact law = '{law}', pair = '{pair}' /\n"
             f"&material name = 'ball', {ball.text} /\n&material name = 'plate', {plate.text} /\n"
         )
 
-    return text(waves, law, pair), text(
-        "none" if mass else "body", "receding", "series"
-    )
+    exact = "receding"
+    if "'punch'" in body:
+        # its contact has one radius
+        exact = law = "boltzmann"
+    return text(waves, law, pair), text("none" if mass else "body", exact, "series")
 
 
 def solve(name: str, rng: np.random.Generator, known: list[Material]) -> Impact | None:
@@ -213,13 +246,7 @@ def report(name: str, impacts: list[Impact]) -> str:
     }
     close = [one for one in impacts if one.is_within(GOOD)]
     far = [one for one in impacts if not one.is_within(CAUTION)]
-    worst = max(
-        (
-            abs(one.exact - one.computed) / max(GOOD[0] * one.exact, GOOD[1])
-            for one in by["good"]
-        ),
-        default=0.0,
-    )
+    worst = max((one.excess(GOOD) for one in by["good"]), default=0.0)
     cells = [
         name,
         share([one for one in by["good"] if one.is_within(GOOD)], by["good"]),
