@@ -19,11 +19,11 @@ module vcor_app_validity
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_number, only : real_text
    use vcor_text, only : integer_text, printable
-   use vcor_verify_models, only : differ, model_t, solve_model
+   use vcor_verify_models, only : model_t, solve_exact
    implicit none
    private
 
-   public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
+   public :: mechanics_of, measures_report, measures_remark, points_report, &
       points_remark, exact_points, about_numbers, warn_of_input, warn_of_data
 
    !> End of a line
@@ -33,7 +33,7 @@ module vcor_app_validity
       'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
       'energy_loss', 'energy_imbalance', 'contact_ratio', 'needed_extent', &
       'deflection_ratio', 'weight_ratio', 'mean_pressure', 'cor_deviation', 'layer_strain', &
-      'mass_ratio']
+      'mass_ratio', 'axis_tension']
 
 contains
 
@@ -111,33 +111,6 @@ contains
          .or. case%given('plate', 'half_thickness'))) text = text//', free on both sides'
    end function mechanics_of
 
-   !> Solve the impact of a case with the exact mechanics
-   subroutine solve_exact(case, outcome, exact, is_shown)
-      type(case_t), intent(in) :: case
-      type(outcome_t), intent(in) :: outcome
-      !> Outcome with the exact mechanics
-      type(model_t), intent(out) :: exact
-      !> Whether it differs from the given outcome, or does not exist
-      logical, intent(out) :: is_shown
-
-      character(len=:), allocatable :: waves
-      logical :: is_valid
-
-      call case%get('plate', 'waves', waves)
-      is_shown = .false.
-      if (waves == 'body' .and. outcome%is_coupled()) return
-      exact = model_t(waves, 'receding', 'series')
-      if (.not. case%has_second_sphere()) exact%waves = 'body'
-      call solve_model(case, exact, is_valid)
-      if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
-         ! a half space without density has no waves
-         exact = model_t(waves, 'receding', 'series')
-         call solve_model(case, exact, is_valid)
-      end if
-      is_shown = allocated(exact%failure)
-      if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
-   end subroutine solve_exact
-
    !> The level of an impact, a line for each measure that is not good, and one line for the good
    !> ones
    function measures_report(outcome, surroundings) result(text)
@@ -202,6 +175,9 @@ contains
             case ('mean_pressure')
                words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
                   //'too high; take a slower impact'
+            case ('axis_tension')
+               words = 'around the axis the contact pulls with '//percent(value)//' of its mean ' &
+                  //'pressure, where a real one opens; take a slower or a smaller body'
             case ('energy_loss')
                words = gain()
             case ('mass_ratio')
@@ -344,11 +320,13 @@ contains
       outcome%cor_deviation = summary%values(places(14))%reals(point)
       outcome%layer_strain = summary%values(places(15))%reals(point)
       outcome%mass_ratio = summary%values(places(16))%reals(point)
+      outcome%axis_tension = summary%values(places(17))%reals(point)
    end function outcome_at
 
    !> Restitution of the sphere with exact mechanics at the first and the last point with a result,
    !> at those of the smallest and the largest value, and at those of the largest predicted
-   !> deviations; and the largest difference that is found beside the predicted one
+   !> deviations, as long as that takes little time; and the largest difference that is found
+   !> beside the predicted one
    function exact_points(case, grid, summary) result(text)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -358,11 +336,13 @@ contains
 
       character(len=*), parameter :: labels(9) = [character(len=8) :: 'first', 'last', 'smallest', &
          'largest', '', '', '', '', '']
+      ! time of the processor after which no other point is solved [s]
+      real(wp), parameter :: longest = 0.2_wp
       type(model_t) :: exact
       logical, allocatable :: known(:)
       logical :: differs, is_shown
       integer :: points(size(labels)), i, farthest
-      real(wp) :: difference, largest
+      real(wp) :: difference, largest, start, now
       character(len=:), allocatable :: value
 
       text = ''
@@ -381,7 +361,10 @@ contains
             points(i) = maxloc(abs(deviation), dim=1, mask=known)
             if (points(i) > 0) known(points(i)) = .false.
          end do
+         call cpu_time(start)
          do i = 1, size(points)
+            call cpu_time(now)
+            if (now - start > longest) exit
             if (points(i) == 0 .or. any(points(:i - 1) == points(i))) cycle
             call solve_exact(grid%case_at(case, points(i)), outcome_at(summary, &
                places_of_measures(), points(i)), exact, is_shown)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How far each verdict is off: draws impacts, solves them with exact mechanics, and prints a table.
 
-    verdicts.py [--seed N] [--count 300] [--only CLASS,...] [--worst N]
+    verdicts.py [--seed N] [--count 300] [--only CLASS;...] [--worst N] [--write [TABLE]]
 
 Radius 0.5 to 20 mm, velocity 0.1 to 20 m/s, thickness 0.3 to 20 radii, all log-uniform; the materials of
 examples/materials, and power laws and Prony series with loss tangents up to 1 at the frequency of the contact. Other
@@ -9,7 +9,9 @@ shapes are cones, punches, bodies of revolution and true spheres of the same mas
 them with their weight.
 Impacts whose cor_sphere, as computed or exact, is below 0.02 are drawn again. Only `cor_deviation` is judged here,
 without the measures of other things (contact_ratio, extent). --worst prints the impacts of each class that
-are farthest from their prediction. Takes about ten minutes. Needs the Python package (PYTHONPATH=python/src and
+are farthest from their prediction. --write puts the table into docs/validity.md, and how many verdicts of all classes
+together are right into the sentences of the help, the legend of figures, the FAQ and that page; with a file it takes
+the table that was printed into it. Takes about ten minutes. Needs the Python package (PYTHONPATH=python/src and
 VCOR_LIBRARY=build/release/libvcor_python.so will do).
 """
 
@@ -19,6 +21,7 @@ import os
 import re
 import sys
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -238,6 +241,77 @@ def share(part: list[Impact], whole: list[Impact]) -> str:
     )
 
 
+HEAD = (
+    "| class | `good` within 2 % or 0.01 | worst, times that | `caution` within 10 % or 0.05 | of those within 2 % or "
+    "0.01, `good` | of those far off, `outside` | far off and `good` |\n"
+    "| --- | --- | --: | --- | --- | --- | --: |"
+)
+#: Sentences with the shares of `good` and `caution` that are right, in 100: the text before the number and after it
+SENTENCES = {
+    "app/help.f90": (
+        (r"\(", r" of 100 random impacts\), caution", "good"),
+        (r"\(", r" of 100\), outside", "caution"),
+    ),
+    "python/src/vcor/plot.py": (
+        ("with caution: ", " of 100 within 10 %", "caution"),
+    ),
+    "docs/faq.md": (
+        (r"the model's \(", r" of 100 random\n", "good"),
+        (r"exact mechanics, ", r" of 100 with `caution` within", "caution"),
+    ),
+    "docs/validity.md": (
+        (r"`good` means within 2 % or 0.01 \(", r" of 100\)", "good"),
+        (r"`caution` within\n  10 % or 0.05 \(", r" of 100\)", "caution"),
+    ),
+}
+
+
+def shares(table: str) -> dict[str, int]:
+    """Right verdicts of all classes of a table together, in 100, rounded down."""
+    found = {}
+    for verdict, column in (("good", 2), ("caution", 4)):
+        counts = [
+            re.match(r" (\d+)/(\d+)", line.split("|")[column])
+            for line in table.splitlines()
+        ]
+        known = [one for one in counts if one]
+        right, all_of = (sum(int(one[i]) for one in known) for i in (1, 2))
+        found[verdict] = 100 * right // all_of
+    return found
+
+
+def table_of_page() -> str:
+    """The table in docs/validity.md."""
+    page = (TOP / "docs/validity.md").read_text(encoding="utf-8")
+    start = page.index(HEAD)
+    return page[start : page.index("\n\n", start)]
+
+
+def places(table: str) -> Iterator[tuple[Path, str, str]]:
+    """Each file with a sentence, what it says and what it should say."""
+    found = shares(table)
+    for name, sentences in SENTENCES.items():
+        path = TOP / name
+        text = path.read_text(encoding="utf-8")
+        for before, after, verdict in sentences:
+            matches = re.findall(rf"{before}(\d+){after}", text)
+            if len(matches) != 1:
+                raise LookupError(f"{name} has {len(matches)} sentences '{before}N{after}', expected one")
+        right = text
+        for before, after, verdict in sentences:
+            right = re.sub(rf"({before})\d+({after})", rf"\g<1>{found[verdict]}\g<2>", right)
+        yield path, text, right
+
+
+def write(table: str) -> None:
+    """Put a table and its sentences into the pages."""
+    path = TOP / "docs/validity.md"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace(table_of_page(), table.strip()), encoding="utf-8")
+    for file, _, right in places(table):
+        file.write_text(right, encoding="utf-8")
+
+
 def report(name: str, impacts: list[Impact]) -> str:
     """How far each verdict of a class is off, a row of the table."""
     by = {
@@ -271,13 +345,16 @@ def main() -> None:
     parser.add_argument(
         "--worst", type=int, default=0, help="impacts to print of each class"
     )
-    options = parser.parse_args()
-    known = examples()
-    print(
-        "| class | `good` within 2 % or 0.01 | worst, times that | `caution` within 10 % or 0.05 | of those within 2 % or "
-        "0.01 `good` | of those beyond 10 % and 0.05 `outside` | `good` |"
+    parser.add_argument(
+        "--write", nargs="?", const="", metavar="TABLE", help="write the pages; from a table"
     )
-    print("| --- | --- | --: | --- | --- | --- | --: |")
+    options = parser.parse_args()
+    if options.write:
+        write(Path(options.write).read_text(encoding="utf-8"))
+        return
+    known = examples()
+    lines = [HEAD]
+    print(HEAD)
     for index, name in enumerate(CLASSES):
         if options.only and not any(
             name.startswith(one) for one in options.only.split(";")
@@ -289,13 +366,16 @@ def main() -> None:
             one = solve(name, rng, known)
             if one is not None:
                 impacts.append(one)
-        print(report(name, impacts), flush=True)
+        lines.append(report(name, impacts))
+        print(lines[-1], flush=True)
         impacts.sort(key=lambda one: -abs(one.exact - one.computed - one.predicted))
         for one in impacts[: options.worst]:
             print(
                 f"computed {one.computed:.4f}, exact {one.exact:.4f}, predicted {one.computed + one.predicted:.4f}\n{one.case}",
                 file=sys.stderr,
             )
+    if options.write is not None:
+        write("\n".join(lines))
 
 
 if __name__ == "__main__":
