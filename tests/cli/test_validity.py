@@ -417,7 +417,7 @@ def test_what_a_plate_with_waves_contains(vcor):
     out = screen(vcor, SLS, "--set", "plate.waves=body")
     row = numbers(vcor, SLS, "--set", "plate.waves=body")
     judged = re.findall(r"(\w+) [0-9.E+-]+(?:[:,]|$)", out.split("validity: ")[1].split("note")[0], re.MULTILINE)
-    assert set(judged) == {"contact_ratio", "weight_ratio", "mass_ratio", "cor_deviation"}
+    assert set(judged) == {"contact_ratio", "weight_ratio", "mass_ratio", "axis_tension", "cor_deviation"}
     assert row["cor_deviation"] == 0 and row["wave_loss"] == 0
     for name in ("hysteresis_energy", "wave_energy", "deflection_ratio", "inelasticity"):
         assert math.isnan(row[name]), name
