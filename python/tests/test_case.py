@@ -86,7 +86,7 @@ def test_a_sweep(program, tmp_path, threads):
 
 
 def test_exact_mechanics_beside_a_single_impact():
-    """The dataset of an impact has the restitution of exact mechanics, its own where it has them."""
+    """The dataset has the restitution of exact mechanics, its own where it has them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", vcor.ValidityWarning)
         case = vcor.read(PAPER / "sls.nml")

@@ -133,6 +133,8 @@ contains
          around%yield_strength = scale
          outcome%mean_pressure = scale*value
       case (8)
+         outcome%axis_tension = value
+      case (9)
          ! below 0.5 the restitution itself does not matter
          outcome%cor_sphere = 0.25_wp
          outcome%cor_deviation = -0.5_wp*value

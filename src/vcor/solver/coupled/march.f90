@@ -333,8 +333,8 @@ contains
          return
       end if
       call raise(error, error_numerical, 'no pressure balances a step of the contact: the plate ' &
-         //'gives way within the step by more than the contact can resolve; take a thicker plate, ' &
-         //'a lighter body or a slower impact')
+         //'gives way within the step by more than the contact can resolve; take a thicker ' &
+         //'plate, a lighter body or a slower impact')
    end subroutine find_pushing
 
    !> Let a spring push, or not
