@@ -626,3 +626,17 @@ def test_slips_of_a_sweep(vcor):
 @pytest.mark.parametrize("path", [*EXAMPLES, *SWEEPS], ids=lambda path: path.stem)
 def test_examples_are_plausible(vcor, path):
     assert "warning" not in vcor("check", path).err
+
+
+def test_largest_difference_of_a_sweep(vcor):
+    """The screen of a sweep solves some points exactly, and shows the largest difference beside the predicted one."""
+    text = SLS + "&sweep parameter = 'impact.velocity', values = 1, 2, 3, 4 /\n"
+    out = screen(vcor, text)
+    ((difference, predicted, velocity),) = re.findall(
+        r"^    largest difference found (\S+), predicted (\S+), impact.velocity = (\S+)$", out, re.MULTILINE)
+    row = numbers(vcor, SLS, "--set", f"impact.velocity={velocity}")
+    assert float(predicted) == pytest.approx(row["cor_deviation"], rel=0.01)
+    exact = exact_of(vcor, SLS, "--set", f"impact.velocity={velocity}")
+    assert float(difference) == pytest.approx(exact - row["cor_sphere"], rel=0.01)
+    shown = re.findall(r"^    (first|last|smallest|largest), impact.velocity = .*, exact ", out, re.MULTILINE)
+    assert shown[0] == "first" and len(shown) <= 4
