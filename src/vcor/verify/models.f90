@@ -16,7 +16,7 @@ module vcor_verify_models
    implicit none
    private
 
-   public :: model_t, solve_models, solve_model, differ
+   public :: model_t, solve_models, solve_exact, differ
 
    !> The case with one plate model, one contact law and one pair
    type :: model_t
@@ -154,6 +154,33 @@ contains
          model%outcome = outcome_t()
       end if
    end subroutine solve_model
+
+   !> Solve the impact of a case with the exact mechanics
+   subroutine solve_exact(case, outcome, exact, is_shown)
+      type(case_t), intent(in) :: case
+      type(outcome_t), intent(in) :: outcome
+      !> Outcome with the exact mechanics
+      type(model_t), intent(out) :: exact
+      !> Whether it differs from the given outcome, or does not exist
+      logical, intent(out) :: is_shown
+
+      character(len=:), allocatable :: waves
+      logical :: is_valid
+
+      call case%get('plate', 'waves', waves)
+      is_shown = .false.
+      if (waves == 'body' .and. outcome%is_coupled()) return
+      exact = model_t(waves, 'receding', 'series')
+      if (.not. case%has_second_sphere()) exact%waves = 'body'
+      call solve_model(case, exact, is_valid)
+      if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
+         ! a half space without density has no waves
+         exact = model_t(waves, 'receding', 'series')
+         call solve_model(case, exact, is_valid)
+      end if
+      is_shown = allocated(exact%failure)
+      if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
+   end subroutine solve_exact
 
    !> Remove from an error the keys that the combination replaces: the case has other values
    pure subroutine forget_choices(error)
