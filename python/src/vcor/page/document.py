@@ -121,10 +121,13 @@ def make(
         for address, text in (settings or {}).items():
             one[address] = text
     first = next(iter(cases.values()))
-    if first._axes():
+    axes = axes_of(first, vary)
+    trial = first.copy()
+    for axis in axes:
+        trial[axis.address] = float(axis.si(axis.nodes(2))[0])
+    if trial._axes():
         raise InputError(f"{first.name}: found a &sweep group, expected a single impact, whose "
                          f"numbers {option('vary')} varies")  # fmt: skip
-    axes = axes_of(first, vary)
     tables = [solve(one, name, axes, points, threads) for name, one in cases.items()]
     page = Page(_document(first, axes, tables, body), axes, tables)
     if (size := len(page.text.encode())) > MOST_BYTES:
@@ -184,7 +187,6 @@ def _document(case: Case, axes: list[Axis], tables: list[Table], body: str) -> s
         "causes": [[name, columns[name].meaning if name in columns else ""] for name in causes],
         "verdicts": _VERDICTS,
         "tables": [_packed(one) for one in tables],
-        "case": case.text(),
         "figure": json_item(_figure(axes[0])),
     }  # fmt: skip
     texts = [Path(__file__).with_name(name).read_text(encoding="utf-8") for name in _PARTS]
@@ -209,7 +211,7 @@ def _packed(table: Table) -> dict[str, Any]:
     return {
         "name": table.name, "counts": table.counts, "cor": packed(table.cor, "<f4"),
         "state": packed(table.state, "u1"), "cause": packed(table.cause, "u1"),
-        "states": table.states, "drop": table.drop, "beyond": table.beyond,
+        "states": table.states, "case": table.case, "drop": table.drop, "beyond": table.beyond,
         "error": None if math.isnan(table.error) else table.error, "said": said(table),
     }  # fmt: skip
 

@@ -67,6 +67,8 @@ class Table:
     cause: NDArray[np.uint8]
     #: Texts of the states: status and validity
     states: list[tuple[str, ...]]
+    #: The case as namelists with every default
+    case: str = ""
     #: Height of the drop, as `_drop` has it
     drop: dict[str, float] = field(default_factory=dict)
     #: Largest error of interpolation at fresh impacts; nan if there is none with a value
@@ -180,7 +182,7 @@ def solve(
         name, counts, cor.astype(np.float32),
         np.array([states.index(one) for one in known], dtype=np.uint8),
         np.array([causes.index(one) for one in data.validity_cause.values.ravel()], dtype=np.uint8),
-        states, drop=_drop(case, axes), fresh=fresh,
+        states, case=data.attrs["case"], drop=_drop(case, axes), fresh=fresh,
         lost="".join(lost).removeprefix(f"{case.name}: "),
         beyond=data.attrs.get("beyond_data", "").splitlines(),
     )  # fmt: skip
@@ -219,8 +221,9 @@ def _time(case: Case, axes: Sequence[Axis]) -> float:
 def _count(axes: int, one: float) -> int:
     """Points along each axis, by the time that one takes [s]: what `_LONG` allows."""
     least, most = LEAST[axes], MOST[axes]
-    fits = int((_LONG / max(one, _LONG / most**axes)) ** (1 / axes) + 1e-9)
-    return min(max(fits, least), most)
+    # with half as many fresh impacts
+    one = max(1.5 * one, _LONG / most**axes)
+    return max(int((_LONG / one) ** (1 / axes) + 1e-9), least)
 
 
 def _announce(what: str, impacts: int, one: float) -> None:
