@@ -294,6 +294,7 @@
   function parse(content) {
     const points = []
     const faults = []
+    let isFirst = true
     const wanted = `expected ${data.axes[0].label}, e and the length of a bar or none`
     content.split(/\r\n|\r|\n/).forEach((line, i) => {
       const row = line.replace(/#.*/, "").trim()
@@ -305,7 +306,8 @@
         return found ? Number(found[1].replace(",", ".")) / (found[2] ? 100 : 1) : NaN
       })
       const [x, e, bar = 0] = numbers
-      const isHead = points.length === 0 && faults.length === 0 && numbers.every(Number.isNaN)
+      const isHead = isFirst && numbers.every(Number.isNaN)
+      isFirst = false
       if (isHead) return
       let fault = ""
       const wrong = numbers.findIndex((number) => !Number.isFinite(number))
