@@ -8,7 +8,6 @@ import subprocess
 
 import numpy as np
 import pytest
-from conftest import ROOT
 from test_page_file import DROP, MATERIALS, PAD
 
 import vcor
@@ -23,13 +22,14 @@ playwright = pytest.importorskip("playwright.sync_api")
 expect = playwright.expect
 
 FILES = [MATERIALS / f"{name}.nml" for name in ("steel", "natural_rubber", "butyl")]
+LEVELS = ("good", "caution", "outside")
 #: Two numbers, two materials
 POINTS = 9
 
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
-    """Folder of a page with a choice of materials and of one whose verdict changes; their tables."""
+    """A page with a choice of materials, one whose verdict changes, and their tables."""
     made = tmp_path_factory.mktemp("pages")
     (made / "drop.nml").write_text(DROP)
     ranges = {"impact.temperature": "0C:40C", "sphere.diameter": "4mm:40mm"}
@@ -129,7 +129,7 @@ def test_a_page_cannot_ask_for_anything(browser, folder):
 
 
 def test_a_slider_moves_the_number_to_that_of_the_program(opened, folder):
-    """By the keyboard to a point of the sweep: all digits that are shown are those of the program."""
+    """By the keyboard, to a point of the sweep: all its digits are those of the program."""
     shown = opened("drop")
     before = number_of(shown)
     slider = shown.locator("#slider-0")
@@ -328,15 +328,12 @@ def test_light_and_dark(opened):
     backs = []
     for scheme in ("light", "dark"):
         shown.emulate_media(color_scheme=scheme)
-        colours = shown.evaluate(
-            """() => {
-                 const style = getComputedStyle(document.documentElement)
-                 const names = ["page", "box", "text", "soft", "curve", "points", "good", "caution", "outside"]
-                 return Object.fromEntries(names.map((one) => [one, style.getPropertyValue(`--${one}`).trim()]))
-               }"""
-        )
+        colours = {
+            name: shown.evaluate(f"getComputedStyle(document.body).getPropertyValue('--{name}')")
+            for name in ("page", "box", "text", "soft", "curve", "points", *LEVELS)
+        }
         backs.append(lightness(colours["page"]))
-        for name in ("text", "soft", "outside", "caution", "good"):
+        for name in ("text", "soft", *LEVELS):
             assert contrast(colours[name], colours["box"]) >= 4.5
         for name in ("curve", "points"):
             assert contrast(colours[name], colours["page"]) >= 3

@@ -203,6 +203,17 @@ def test_verdicts_and_points_without_a_result():
     assert found.blank > 0 and found.other < found.fresh / 10
 
 
+def test_a_change_of_a_whole_number_is_one_of_the_state(monkeypatch):
+    """As that of contacts with a structure would be; here the number of steps."""
+    monkeypatch.setattr(table, "_STATE", ("status", "validity", "steps"))
+    made = page.make(SLS, {"plate.thickness": "1mm:100mm"}, points=17)
+    (found,) = made.tables
+    steps = [one[2] for one in found.states]
+    assert len(set(steps)) > 1 and all(re.fullmatch(r"\d+", one) for one in steps)
+    for i, (one, other) in enumerate(itertools.pairwise(found.state)):
+        assert math.isnan(found.at([i + 0.5]).value) == (one != other)
+
+
 # ------------------------------------------------------------------------------ the file
 
 

@@ -173,7 +173,10 @@
     const states = found.states.map((one) => table.states[one])
     const [status, level] = states[0]
     if (states.length > 1) {
-      const words = [...new Set(states.map(([one, other]) => (other === "none" ? one : other)))]
+      const isCounted = new Set(states.map(([, , contacts]) => contacts)).size > 1
+      const kind = ([one, other, contacts]) =>
+        (other === "none" ? one : other) + (isCounted ? ` with ${contacts} contacts` : "")
+      const words = [...new Set(states.map(kind))]
       const [low, high] = [Math.min, Math.max].map((end) => end(...found.around.filter(Number.isFinite)))
       const near = `the nearest impacts have e = ${low.toFixed(4)} to ${high.toFixed(4)}`
       return ["", `No number between impacts of different kinds (${words.join(", ").replaceAll("_", " ")}); ${near}.`]

@@ -38,9 +38,9 @@ _FRESH = 25, 200
 _GRAVITY = (size("gn", "m/s2") or (math.nan,))[0]
 #: Points of a cubic polynomial
 _CUBIC = 4
-#: Columns of the sweep. Nothing is interpolated between two statuses or two levels of validity
-_STATE = ("status", "validity")
-_COLUMNS = ("cor_sphere", "contact_time", "validity_cause", *_STATE)
+#: Columns that make the state of a point, of those that the library has: nothing is interpolated
+#: between two statuses, two levels of validity or two numbers of contacts
+_STATE = ("status", "validity", "contacts")
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Table:
     state: NDArray[np.uint8]
     #: Number of the measure that decides on validity; shape (points,)
     cause: NDArray[np.uint8]
-    #: Texts of the states: status and validity
+    #: Texts of the states: status, validity and what else `_STATE` has
     states: list[tuple[str, ...]]
     #: The case as namelists with every default
     case: str = ""
@@ -157,10 +157,12 @@ def solve(
     counts = (count or _count(len(axes), one / cores),) * len(axes)
     fresh = min(max(math.prod(counts) // 2, _FRESH[0]), _FRESH[1])
     _announce(f"{case.name}{f' with {name}' * bool(name)}", math.prod(counts) + fresh, one / cores)
+    columns = ["cor_sphere", "validity_cause"]
+    columns += [one for one in _STATE if one in _library.columns(0)]
     nodes = {axis.address: axis.si(axis.nodes(counts[0])) for axis in axes}
     with warnings.catch_warnings(record=True) as heard, unwarned(ValidityWarning):
         warnings.simplefilter("always")
-        data = case.sweep(nodes, _COLUMNS, threads=threads)
+        data = case.sweep(nodes, columns, threads=threads)
     cor = data.cor_sphere.values.ravel()
     if not np.isfinite(cor).any():
         case.solve({address: values[0] for address, values in nodes.items()}, ["cor_sphere"])
@@ -174,7 +176,7 @@ def solve(
         shares = np.random.default_rng(1).random((fresh, len(axes)))
         points = {axis.address: axis.si(axis.values(share))
                   for axis, share in zip(axes, shares.T, strict=True)}  # fmt: skip
-        tested = case.points(points, _COLUMNS, threads=threads)
+        tested = case.points(points, columns, threads=threads)
     known = _states(data)
     states = list(dict.fromkeys(known))
     causes = _library.columns(0)["validity_cause"].labels.split()
@@ -201,8 +203,8 @@ def solve(
 
 def _states(data: Any) -> list[tuple[str, ...]]:
     """State of each point: texts that change where nothing may be interpolated."""
-    columns = [data[name].values.ravel().tolist() for name in _STATE]
-    return list(zip(*columns, strict=True))
+    columns = [data[name].values.ravel() for name in _STATE if name in data]
+    return list(zip(*[column.astype(str).tolist() for column in columns], strict=True))
 
 
 def _time(case: Case, axes: Sequence[Axis]) -> float:
