@@ -5,6 +5,7 @@ import json
 import math
 import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -271,6 +272,34 @@ def test_a_file_stands_alone(tmp_path):
     # a title is a text, not a part of the page
     assert "<b>" not in own and data_of(text)["title"] == "Drop </script><b>&amp;"
     assert "__" not in own and str(tmp_path) not in own
+
+
+def test_a_page_names_no_folder(tmp_path):
+    """Neither that of the case nor that of a table, in whatever the page says."""
+    folder = tmp_path / "of a user" / "materials"
+    folder.mkdir(parents=True)
+    source = ROOT / "examples" / "steel_on_measured_rubber.nml"
+    data = ROOT / "examples" / "soft_rubber_data.csv"
+    (folder / data.name).write_text(data.read_text())
+    head, mark, rest = source.read_text().rpartition("&material")
+    (folder / "rubber.nml").write_text(mark + rest)
+    case = tmp_path / "of a user" / "case.nml"
+    case.write_text(head)
+    # contacts shorter than the data know, and some that are no impact
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        made = page.make(
+            case, {"impact.velocity": "1m/s:9e5m/s"}, [folder / "rubber.nml"], points=9
+        )
+    assert {vcor.NoResultWarning, vcor.DataRangeWarning} & {one.category for one in heard}
+    (found,) = data_of(made.text)["tables"]
+    assert data.name in found["case"]
+    assert str(tmp_path) not in made.text and str(tmp_path) not in str(made)
+    # a name that ends as that of the folder does, and a folder above, are another one
+    folders = {Path("a"), Path()}
+    assert (
+        document._without(folders, "a/x.csv, 'a/y', data/z, ../a/w") == "x.csv, 'y', data/z, ../a/w"
+    )
 
 
 def test_a_page_that_would_be_too_large(monkeypatch):

@@ -6,6 +6,7 @@ import base64
 import json
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -129,6 +130,12 @@ def make(
         raise InputError(f"{first.name}: found a &sweep group, expected a single impact, whose "
                          f"numbers {option('vary')} varies")  # fmt: skip
     tables = [solve(one, name, axes, points, threads) for name, one in cases.items()]
+    folders = {Path(one.name).parent for one in cases.values()} | {
+        Path(one).parent for one in materials
+    }
+    for table in tables:
+        table.lost, table.case = (_without(folders, text) for text in (table.lost, table.case))
+        table.beyond = [_without(folders, line) for line in table.beyond]
     page = Page(_document(first, axes, tables, body), axes, tables)
     if (size := len(page.text.encode())) > MOST_BYTES:
         raise UsageError(f"the page has {size / 1e6:.1f} MB, expected at most "
@@ -164,6 +171,14 @@ def _choices(case: Case, materials: Sequence[str | os.PathLike[str]], body: str)
         found[name].add(group)
         found[name][f"{body}.material"] = name
     return found
+
+
+def _without(folders: set[Path], text: str) -> str:
+    """A text without the folders of files, which are nothing for who receives a page."""
+    for folder in folders:
+        for name in (folder.resolve(), folder.absolute(), folder):
+            text = re.sub(rf"(?<![\w/.-]){re.escape(str(name))}/", "", text)
+    return text
 
 
 def _plain(name: str) -> str:
