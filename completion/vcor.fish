@@ -8,6 +8,8 @@ function __vcor_described_programs
       switch $name
          case plot
             echo 'plot	draw figures of results'
+         case page
+            echo 'page	write a page for the browser, with sliders'
          case fit
             echo 'fit	identify a material from measured moduli'
          case identify

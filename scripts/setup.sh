@@ -89,6 +89,8 @@ look() {
       need "man" "man-db" have man
       need "dpkg-shlibdeps" "dpkg-dev" have dpkg-shlibdeps
       need "file" "file" have file
+      # pages are opened in it, with letters to write them
+      need "chromium" "chromium fonts-dejavu-core" have chromium
    fi
 }
 

@@ -8,7 +8,14 @@ import sys
 import pytest
 from conftest import ROOT
 
-PAGES = ["python.md", "distributed.md", "exchange.md", "recipes.md", "reference_impacts.md"]
+PAGES = [
+    "python.md",
+    "distributed.md",
+    "exchange.md",
+    "page.md",
+    "recipes.md",
+    "reference_impacts.md",
+]
 SCRIPTS = {
     f"{name}-{i}": script
     for name in PAGES

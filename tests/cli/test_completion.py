@@ -95,7 +95,7 @@ def test_help_lists_programs_of_path(environment, vcor):
 def test_commands_of_the_package_that_are_not_there(vcor, monkeypatch):
     document = json.loads(vcor.succeeds("help", "--json"))
     names = [one["name"] for one in document["package_commands"]]
-    assert names == ["plot", "fit", "identify", "uncertainty", "export", "card", "master", "table"]
+    assert names == ["plot", "page", "fit", "identify", "uncertainty", "export", "card", "master", "table"]
     monkeypatch.setenv("PATH", "/nowhere")
     for name in names:
         if name in [command["name"] for command in document["commands"]]:

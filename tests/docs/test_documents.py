@@ -98,7 +98,7 @@ def test_modules_and_files_that_pages_name():
 def package(tmp_path_factory):
     """A folder with the commands of the package."""
     folder = tmp_path_factory.mktemp("bin")
-    with commands_in(folder, ["card", "export", "fit", "identify", "master", "plot", "table", "uncertainty"]):
+    with commands_in(folder, ["card", "export", "fit", "identify", "master", "page", "plot", "table", "uncertainty"]):
         yield folder
 
 

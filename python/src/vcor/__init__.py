@@ -111,12 +111,12 @@ _LATER = {
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "plot"]
+    return [*__all__, "page", "plot"]
 
 
 def __getattr__(name: str) -> Any:
-    if name == "plot":
-        return importlib.import_module("vcor.plot")
+    if name in ("page", "plot"):
+        return importlib.import_module(f"vcor.{name}")
     if name not in _LATER:
         raise AttributeError(f"module 'vcor' has no attribute '{name}'")
     found = getattr(importlib.import_module(f"vcor.{_LATER[name]}"), name)

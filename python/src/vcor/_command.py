@@ -24,7 +24,7 @@ from ._library import (
     __version__,
     printable,
 )
-from ._text import OPTIONS, name_flaw, near
+from ._text import OPTIONS, name_flaw, near, option
 
 FORMATS = ("svg", "pdf", "png")
 
@@ -81,7 +81,7 @@ class Parser(argparse.ArgumentParser):
                         "can be read on one line"
                     )
         if (flaw := name_flaw(getattr(options, "output", None) or "")) != "":
-            raise UsageError(f"--output: the name {flaw}, expected another name")
+            raise UsageError(f"{option('output')}: the name {flaw}, expected another name")
         return options
 
 
@@ -160,6 +160,7 @@ MODULES = {
     "fit": "materials.fit_command",
     "identify": "materials.identification",
     "master": "materials.master",
+    "page": "page.command",
     "plot": "plot",
     "table": "materials.table",
     "uncertainty": "uncertainty_command",
@@ -174,6 +175,6 @@ def parser_of(name: str) -> Parser:
 
 
 # The commands vcor-NAME
-card, export, fit, identify, master, plot, table, uncertainty = (
+card, export, fit, identify, master, page, plot, table, uncertainty = (
     functools.partial(_run, name) for name in MODULES
 )
