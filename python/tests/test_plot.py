@@ -220,7 +220,9 @@ def test_where_the_model_does_not_hold(results):
 
 def test_caution_has_hatching_of_its_own():
     case = vcor.read(PAPER.parent / "steel_on_glass.nml")
-    thick = {"plate.half_thickness": np.geomspace(5e-4, 1e-2, 12)}
+    # without the waves that it has
+    case["plate.waves"] = "none"
+    thick = {"plate.half_thickness": np.geomspace(5e-4, 1e-1, 12)}
     found = case.sweep(thick, ["cor", "validity"])
     assert set(found.validity.values) == {"good", "caution", "outside"}
     over = {"impact.velocity": np.geomspace(0.01, 1.0, 4)}
