@@ -20,7 +20,7 @@ OF_COMMANDS = {"_parser", "_work", "main", "joined", "add_outputs", "add_data_op
 #: Public functions whose parameters messages may name
 FUNCTIONS = [
     *(getattr(vcor, name) for name in vcor.__all__ if inspect.isfunction(getattr(vcor, name))),
-    vcor.plot.figure, table, _text.place,
+    vcor.page.make, vcor.plot.figure, table, _text.place,
 ]  # fmt: skip
 
 

@@ -87,6 +87,7 @@ def test_a_blank_argument_is_refused(capsys, name, blank):
 @pytest.mark.parametrize("name", [name for name in MODULES if name != "export"])
 def test_a_blank_file_is_refused(capsys, tmp_path, name):
     words = {"card": ["--for", "abaqus"], "identify": ["a.csv", "--free", "a.b"],
+             "page": ["--vary", "a.b=1:2", "--save", f"{tmp_path / 'page.html'}"],
              "uncertainty": ["--vary", "a.b=5%"]}.get(name, [])  # fmt: skip
     assert refusal(capsys, name, "", *words)[0] in (2, 4)
     assert refusal(capsys, name, tmp_path / " ", *words)[0] == 4
