@@ -433,8 +433,8 @@ def test_records_on_a_baseline(sls, offset, sign, mass):
 )
 def test_the_accuracy_of_impacts_follows_from_the_data(sls, cor, errors, accuracy):
     data = {"velocity": [1.0, 3.0, 9.0], "cor": cor}
-    block = observations(sls, data, ["rubber.beta"])
-    assert identification._deserved([block], errors) == pytest.approx(accuracy, rel=1e-6)
+    blocks = observations(sls, data, ["rubber.beta"])
+    assert identification._deserved(blocks, errors) == pytest.approx(accuracy, rel=1e-6)
 
 
 def test_misfits_that_are_correlated(sls):
@@ -741,7 +741,7 @@ def test_the_limits_of_the_model_are_reported(sls):
     found = vcor.identify(sls, {"velocity": velocity, "cor": cor}, ["rubber.alpha"])
     assert found["rubber.alpha"] == pytest.approx(300.0, rel=1e-5)
     assert found.validity == "outside at 2 of 2 impacts, by cor_deviation"
-    assert "coefficients only" in str(found) and f"validity: {found.validity}" in str(found)
+    assert "leave the scale of times" in str(found) and f"validity: {found.validity}" in str(found)
 
 
 class Valley:
