@@ -444,7 +444,7 @@ def test_data_that_begin_after_the_contact(table, first):
     assert auto == table.numbers("case.nml", *direct)
     fine = table.numbers("case.nml", *direct, "--set", "solver.accuracy=1e-8")
     assert abs(float(auto["cor"]) - float(fine["cor"])) < 1e-6
-    assert "\n  direct, " in table.succeeds("run", "case.nml")
+    assert "\n  method direct in " in table.succeeds("run", "case.nml")
     assert "so only direct is shown" in table.succeeds("verify", "case.nml")
     done = table("run", "case.nml", "--set", "solver.method=ive", "--print", "cor,cor_error,status")
     assert (done.code, done.out) == (NUMERICAL, "nan nan failed\n")
