@@ -67,20 +67,24 @@ contains
       text = text//files//nl
    end function report
 
-   !> The answer in one line: the coefficient of restitution that an experiment reads, whether the
-   !> model holds, and the exact value if that differs
+   !> The answer: the coefficient of restitution that an experiment reads, and in a line of its own
+   !> whether the model holds, and the exact value if that differs. Each has at most 80 columns
    function answer(outcome, exact) result(text)
       type(outcome_t), intent(in) :: outcome, exact
       character(len=:), allocatable :: text
 
+      character(len=:), allocatable :: second
+
       text = '  e_a = '//significant(outcome%cor_sphere, digits_of(outcome, outcome%cor_sphere, &
-         outcome%cor_sphere_error), 0)//', the restitution of the sphere, as a drop test reads it'
-      if (outcome%validity == level_outside) text = text//'; outside the validity of the model'
-      if (outcome%validity == level_caution) text = text//'; with caution'
-      if (.not. ieee_is_nan(exact%cor_sphere)) text = text//'; with exact mechanics ' &
+         outcome%cor_sphere_error), 0) &
+         //', the restitution of the sphere, as a drop test reads it'//nl
+      second = ''
+      if (outcome%validity == level_outside) second = '; outside the validity of the model'
+      if (outcome%validity == level_caution) second = '; with caution'
+      if (.not. ieee_is_nan(exact%cor_sphere)) second = second//'; with exact mechanics ' &
          //significant(exact%cor_sphere, digits_of(exact, exact%cor_sphere, &
          exact%cor_sphere_error), 0)
-      text = text//nl
+      if (second /= '') text = text//'  '//second(3:)//nl
    end function answer
 
    !> Lines of a group of quantities

@@ -155,7 +155,7 @@ def loss_band(one, v):
     one["plate.waves"] = "none"
     names = [one["sphere.material"], one["plate.material"]]
     vary = {f"{name}.modulus": MODULUS for name in names} | {f"{names[1]}.density": DENSITY}
-    low, middle, high = band(one, vary, "impact.velocity", [v], "half_space_loss")
+    low, middle, high = band(one, vary, "impact.velocity", [v], "wave_loss")
     return (low / middle)[0], (high / middle)[0]
 
 
@@ -183,7 +183,7 @@ def alumina():
     one = vcor.read(ROOT / "examples" / "alumina_on_glass.nml")
     v = np.geomspace(1.5, 5, 4)
     fine = np.geomspace(1.5, 5, 24)
-    quantities = ["cor_sphere", "half_space_loss", "validity", "validity_cause"]
+    quantities = ["cor_sphere", "wave_loss", "validity", "validity_cause"]
     made, (left, right) = panels("upper right", "lower right")
     rows, plates = [], {}
     half_space = vcor.Case(re.sub(r"half_thickness.*\n", "\n", one.text()))
@@ -206,8 +206,8 @@ def alumina():
         if name == "half space":
             left.fill_between(fine, 1 - high * loss, 1 - low * loss, color=color, alpha=0.2, lw=0)
         rows.append([f"{name} (`{waves}`)", plates[name]["cor_sphere"], plates[name]])
-    loss = plates["no waves"]["half_space_loss"]
-    rows.append(["no waves, less `half_space_loss`", np.sqrt(1 - loss), None])
+    loss = plates["no waves"]["wave_loss"]
+    rows.append(["no waves, less `wave_loss`", np.sqrt(1 - loss), None])
     measured(left, *oblique(), fmt="D", color="0.45", label="oblique, from figures")
     measured(left, point.velocity, point.cor_sphere, point.cor_sphere_sigma, label="measured")
     left.set(xlabel="normal velocity [m/s]", ylabel="restitution of the sphere", ylim=(0.965, 1.05))
@@ -371,7 +371,7 @@ def acetate():
             found = one.sweep({"impact.velocity": fine}, ["cor", "validity"])
             curve(left, fine, found.cor, color, line, label=f"{what}, {model}")
         hatch(left, fine, found.validity.values)
-        at = wall.solve({"impact.velocity": seen.velocity}, ["cor", "half_space_loss", "validity"])
+        at = wall.solve({"impact.velocity": seen.velocity}, ["cor", "wave_loss", "validity"])
         ends = band(wall, vary, "impact.velocity", [seen.velocity], "cor", covariance=fit.as_dict())
         rows.append([f"acetate on a wall, {model}", form.format(fit[free]), f"{at['cor']:.3f}",
                      f"{ends[0][0]:.3f} to {ends[2][0]:.3f}", "not found",

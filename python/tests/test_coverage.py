@@ -60,7 +60,7 @@ def test_data_that_begin_too_late(call):
 @pytest.mark.parametrize("call", CALLS.values(), ids=list(CALLS))
 def test_validity(call):
     said, lines = heard(lambda: call(butyl()), vcor.ValidityWarning)
-    assert len(lines) == 1 and "outside (plate_wave_number)" in lines[0]
+    assert len(lines) == 1 and "outside (cor_deviation)" in lines[0]
     assert said["validity"] in lines[0]
     good = butyl()
     good["sphere.radius"], good["impact.velocity"] = 1e-3, 1e-3

@@ -725,7 +725,7 @@ def test_the_limits_of_the_model_are_reported(sls):
     sls["rubber.alpha"] = 250.0
     found = vcor.identify(sls, {"velocity": velocity, "cor": cor}, ["rubber.alpha"])
     assert found["rubber.alpha"] == pytest.approx(300.0, rel=1e-5)
-    assert found.validity == "outside at 2 of 2 impacts, by bending_loss, half_space_loss"
+    assert found.validity == "outside at 2 of 2 impacts, by cor_deviation"
     assert "coefficients only" in str(found) and f"validity: {found.validity}" in str(found)
 
 

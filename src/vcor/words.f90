@@ -25,7 +25,9 @@ module vcor_words
       gone_t('footprint', "waves = 'body' solves the contact itself: remove it"), &
       gone_t('shore', 'a hardness is not a modulus, see vcor help hardness'), &
       gone_t('hardness', 'a hardness is not a modulus, see vcor help hardness'), &
-      gone_t('footprint_effect', "waves = 'body' solves the contact itself: remove it")]
+      gone_t('footprint_effect', "waves = 'body' solves the contact itself: remove it"), &
+      gone_t('half_space_loss', 'wave_loss has the waves of every face, in one column'), &
+      gone_t('bending_loss', 'wave_loss has the waves of every face, in one column')]
 
    !> A name that the field has for a word of input or output
    type :: synonym_t

@@ -1,18 +1,21 @@
-!> Measures of validity: thresholds, resistance of a half space, indentation between nodes
+!> Measures of validity: thresholds, compliance of a face with waves, indentation between nodes
 program test_validity
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : col_indentation, col_time, col_velocity, trajectory_t
-   use vcor_impact_validity, only : half_space_resistance, judge, level_caution, level_good, &
-      level_none, level_outside, surroundings_t, thresholds
-   use vcor_kinds, only : wp
-   use vcor_numeric_quadrature, only : gauss_nodes
+   use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding
+   use vcor_impact_mobility, only : direct_mobility, mobility_t
+   use vcor_impact_validity, only : judge, level_caution, level_good, level_none, level_outside, &
+      surroundings_t, thresholds
+   use vcor_kinds, only : pi, wp
    use vcor_test, only : check, check_relative, finish, suite
    implicit none
 
    real(wp), parameter :: rounding = 1.0e-14_wp
 
    call suite("validity")
-   call test_resistance()
+   call test_half_space()
+   call test_thin_plate()
+   call test_table()
    call test_thresholds()
    call test_cause()
    call test_gain()
@@ -21,22 +24,61 @@ program test_validity
 
 contains
 
-   !> Miller and Pursey's integral, from a path around its singularities (9 digits)
-   subroutine test_resistance()
+   !> A small contact on a half space has the loss of Miller and Pursey: their integral, from a path
+   !> around its singularities (9 digits)
+   subroutine test_half_space()
       real(wp), parameter :: ratio(6) = [-0.5_wp, 0.0_wp, 0.25_wp, 0.3_wp, 0.4_wp, 0.5_wp]
       real(wp), parameter :: expected(6) = [2.44644576_wp, 1.34437530_wp, 0.930752602_wp, &
          0.862223129_wp, 0.742946155_wp, 0.656117003_wp]
-      ! half a digit, and what the rule of 48 nodes leaves
-      real(wp), parameter :: tolerance = 1.0e-8_wp
-      real(wp) :: node(48), weight(48)
+      ! the next term is of the order of the contact over the wave length, p
+      real(wp), parameter :: p = 1.0e-5_wp, tolerance = 10.0_wp*p
+      complex(wp) :: extra
       integer :: i
 
-      call gauss_nodes(node, weight)
       do i = 1, size(ratio)
-         call check_relative(half_space_resistance(ratio(i), node, weight), expected(i), &
-            tolerance, "resistance of a half space")
+         extra = direct_mobility(base_half_space, ratio(i), cmplx(p, 0.0_wp, wp), 1.0_wp)
+         call check_relative(-real(extra, wp)*pi*(1.0_wp - ratio(i))/p, expected(i), tolerance, &
+            "loss of a half space")
       end do
-   end subroutine test_resistance
+   end subroutine test_half_space
+
+   !> A free plate that is thin for its waves moves as Zener's, sqrt(6/(1 - nu))/(4 p)
+   subroutine test_thin_plate()
+      real(wp), parameter :: p = 1.0e-5_wp, nu = 0.3_wp
+      ! the next term is y ln(y), relative
+      real(wp), parameter :: tolerance = -2.0_wp*p*log(p)
+      complex(wp) :: extra
+
+      extra = direct_mobility(base_free, nu, cmplx(p, 0.0_wp, wp), 1.0e-3_wp)
+      call check_relative(real(extra, wp), sqrt(6.0_wp/(1.0_wp - nu))/(4.0_wp*p), tolerance, &
+         "thin plate")
+   end subroutine test_thin_plate
+
+   !> Between its nodes, and off its ray, the table is as accurate as its spacing lets it be
+   subroutine test_table()
+      integer, parameter :: bases(4) = [base_half_space, base_free, base_bonded, base_sliding]
+      ! wave number and radius of the contact in thicknesses, and what a loss turns p by
+      real(wp), parameter :: size_of_p(3) = [0.13_wp, 1.1_wp, 6.3_wp]
+      real(wp), parameter :: radius(3) = [0.012_wp, 0.17_wp, 0.9_wp]
+      real(wp), parameter :: turn(3) = [0.0_wp, -0.2_wp, 0.15_wp]
+      real(wp), parameter :: ray(1) = [1.05_wp], nu = 0.35_wp, thickness = 0.02_wp
+      ! where wave, layer and contact are of one size
+      real(wp), parameter :: tolerance = 1.0e-2_wp
+      type(mobility_t) :: table
+      complex(wp) :: found, expected, p
+      integer :: i, j
+
+      do i = 1, size(bases)
+         call table%describe(bases(i), nu, ray)
+         do j = 1, size(radius)
+            p = size_of_p(j)*exp(cmplx(0.0_wp, ray(1) + turn(j), wp))
+            call table%compliance(1, p/thickness, radius(j)*thickness, thickness, found)
+            expected = direct_mobility(bases(i), nu, p, radius(j))/thickness
+            call check_relative(abs(found - expected)/abs(expected) + 1.0_wp, 1.0_wp, tolerance, &
+               "table of the face")
+         end do
+      end do
+   end subroutine test_table
 
    !> Each measure by itself, on either side of both thresholds
    subroutine test_thresholds()
@@ -76,32 +118,24 @@ contains
       case (1)
          outcome%contact_ratio = value
       case (2)
-         outcome%thickness_ratio = value
-      case (3)
          outcome%layer_strain = value
-      case (4)
-         outcome%plate_wave_number = value
-      case (5)
+      case (3)
          around%extent = scale
          outcome%needed_extent = scale*value
-      case (6)
+      case (4)
          outcome%deflection_ratio = value
-      case (7)
+      case (5)
          outcome%weight_ratio = value
-      case (8)
+      case (6)
+         ! a mass that is too small is judged as one that is too large
+         outcome%mass_ratio = 1.0_wp/value
+      case (7)
          around%yield_strength = scale
          outcome%mean_pressure = scale*value
-      case (9)
-         ! what is computed as waves is not lost
-         outcome%initial_energy = scale
-         outcome%wave_energy = scale*0.25_wp
-         outcome%half_space_loss = 0.25_wp + value
-      case (10)
-         ! a plate is either thick or bends
-         outcome%initial_energy = scale
-         outcome%wave_energy = 0.0_wp
-         outcome%half_space_loss = 0.5_wp*value
-         outcome%bending_loss = value
+      case (8)
+         ! below 0.5 the restitution itself does not matter
+         outcome%cor_sphere = 0.25_wp
+         outcome%cor_deviation = -0.5_wp*value
       case default
          call check(.false., "every measure is tested")
       end select

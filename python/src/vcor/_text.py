@@ -59,8 +59,14 @@ def command(name: str) -> str:
     return f"vcor {name}" if OPTIONS.get() else f"vcor.{name}"
 
 
+#: Columns that are gone, and the one that has what they had
+GONE = {"half_space_loss": "wave_loss", "bending_loss": "wave_loss"}
+
+
 def near(word: str, known: Iterable[str]) -> str:
-    """What to add to a message about an unknown name, if a known one is like it."""
+    """What to add to a message about an unknown name: its successor, or a known one like it."""
+    if word in GONE:
+        return f"; its place has been taken by {GONE[word]}"
     found = difflib.get_close_matches(word, list(known), 1)
     return f"; did you mean '{found[0]}'?" if found else ""
 

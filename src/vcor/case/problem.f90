@@ -382,7 +382,10 @@ contains
          if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
          if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
          around%yield_strength = yield_strength(1)
-         call around%follow(self%plate%poisson_ratio())
+         around%density = self%plate%density()
+         around%base = inputs%base
+         if (inputs%base == base_free .and. .not. inputs%half_thickness > 0.0_wp) &
+            around%base = base_half_space
       end associate
    end subroutine set_surroundings
 

@@ -108,13 +108,15 @@ module vcor_impact_outcome
       real(wp) :: deflection_ratio = none
       !> Weight of the sphere divided by the largest force [-]
       real(wp) :: weight_ratio = none
+      !> Mass divided by that of a solid ball of the radius and the density of its material [-]
+      real(wp) :: mass_ratio = none
       !> Mean pressure at the time of the largest force [Pa]
       real(wp) :: mean_pressure = none
-      !> Energy radiated into a half space instead of the plate, over `initial_energy` [-]
-      real(wp) :: half_space_loss = none
-      !> Energy that bending of the plate would take, which is not computed, over `initial_energy`
-      !> [-]
-      real(wp) :: bending_loss = none
+      !> Predicted change of `cor_sphere` towards exact mechanics [-]
+      real(wp) :: cor_deviation = none
+      !> Share of `initial_energy` that the face as it is takes by waves, less what the model's
+      !> takes
+      real(wp) :: wave_loss = none
       !> Loss tangent of the contact modulus at pi/t0 [-]
       real(wp) :: peak_loss_tangent = none
       !> Storage modulus of the contact at pi/t0 [Pa]

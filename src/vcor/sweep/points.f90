@@ -437,6 +437,11 @@ contains
       select case (kind%status)
       case (contact_lasting)
          kind%message = 'the bodies do not separate within solver.end_time'
+         associate (problem => sweep%problem)
+            if (problem%surroundings%is_lighter(problem%impact)) kind%message = 'the bodies do ' &
+               //'not separate: the plate is free on both sides and lighter than the ball; on a ' &
+               //'floor give plate.base'
+         end associate
       case (contact_sticking)
          kind%message = 'the sphere sticks: all motion decays in contact'
       case default

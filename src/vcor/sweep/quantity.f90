@@ -43,8 +43,8 @@ module vcor_sweep_quantity
    type(status_t), parameter :: statuses(*) = [ &
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
-      'end_time came before the force returned to zero', 'a larger solver.end_time; a thicker ' &
-      //'plate where the inelasticity is above 3'), &
+      'end_time came before the force returned to zero', 'plate.base where the plate lies on a ' &
+      //'floor; else a thicker one, or a larger solver.end_time'), &
       status_t(contact_sticking, 'sticks', 'all motion decayed in contact', 'nothing: the plate ' &
       //'is too light for it (inelasticity above about 5), or the material flows'), &
       status_t(point_invalid, 'invalid', &
@@ -194,12 +194,14 @@ contains
          outcome%deflection_ratio)
       call list%add('weight_ratio', 'mg/F', '1', 'ratio of the weight of the sphere to max_force', &
          outcome%weight_ratio)
+      call list%add('mass_ratio', 'm/m_s', '1', 'mass / mass of a solid ball of its density', &
+         outcome%mass_ratio)
       call list%add('mean_pressure', 'p_m', 'Pa', 'mean pressure at the largest force', &
          outcome%mean_pressure)
-      call list%add('half_space_loss', 'W_1/KE_0', '1', &
-         'share that waves into a half space carry away', outcome%half_space_loss)
-      call list%add('bending_loss', 'W_b/KE_0', '1', &
-         'share that bending takes, not computed', outcome%bending_loss)
+      call list%add('cor_deviation', 'D_e', '1', &
+         'predicted change of cor_sphere by exact mechanics', outcome%cor_deviation)
+      call list%add('wave_loss', 'W_1/KE_0', '1', &
+         'share of energy in waves that is not computed', outcome%wave_loss)
       call list%add('peak_loss_tangent', 'tan(d)_p', '1', 'loss tangent at pi/t0', &
          outcome%peak_loss_tangent)
       call list%add('peak_storage_modulus', "E'_p", 'Pa', &
