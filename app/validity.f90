@@ -33,7 +33,7 @@ module vcor_app_validity
       'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
       'energy_loss', 'energy_imbalance', 'contact_ratio', 'needed_extent', &
       'deflection_ratio', 'weight_ratio', 'mean_pressure', 'cor_deviation', 'layer_strain', &
-      'mass_ratio']
+      'mass_ratio', 'highest_mode', 'contacts']
 
 contains
 
@@ -199,6 +199,13 @@ contains
             case ('weight_ratio')
                words = 'the weight is '//percent(value) &
                   //' of the largest force, and left out: give impact.gravity, 0 on a pendulum'
+            case ('highest_mode')
+               words = 'the modes end '//trim(merge('below     ', 'just above', &
+                  outcome%highest_mode < 1.0_wp))//' the frequency of the contact, pi/t0: give ' &
+                  //'more of them, or target.residual_compliance'
+            case ('contacts')
+               words = 'the structure strikes the sphere again: damping and phase decide; a ' &
+                  //'velocity that differs by a per cent may give another number'
             case ('mean_pressure')
                words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
                   //'too high; take a slower impact'
@@ -344,6 +351,8 @@ contains
       outcome%cor_deviation = summary%values(places(14))%reals(point)
       outcome%layer_strain = summary%values(places(15))%reals(point)
       outcome%mass_ratio = summary%values(places(16))%reals(point)
+      outcome%highest_mode = summary%values(places(17))%reals(point)
+      outcome%contacts = summary%values(places(18))%integers(point)
    end function outcome_at
 
    !> Restitution of the sphere with exact mechanics at the first and the last point with a result,

@@ -20,8 +20,8 @@ module vcor_case_problem
    use vcor_case_cause, only : explain
    use vcor_case_inputs, only : inputs_t, is_same, of_plate, of_sphere, of_target, &
       positive_or_zero, shape_cone, shape_power, shape_punch, shape_sphere, shape_true_sphere, &
-      target_none, waves_body
-   use vcor_case_structure, only : build_structure
+      target_beam, target_none, target_plate, waves_body
+   use vcor_case_structure, only : build_structure, highest_of_list
    use vcor_case_reader, only : read_inputs
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_t, raise
@@ -355,7 +355,13 @@ contains
       end if
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
       if (allocated(error) .or. outcome%status /= contact_separated) return
-      call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate)
+      if (self%surroundings%is_panel .or. self%surroundings%is_beam) then
+         call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate, &
+            self%carrier)
+      else
+         call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate, &
+            self%plate)
+      end if
    end subroutine solve
 
    !> Set the data for the measures of validity
@@ -382,10 +388,15 @@ contains
          if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
          if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
          around%yield_strength = yield_strength(1)
+         around%is_panel = inputs%target%body == target_plate
+         around%is_beam = inputs%target%body == target_beam
+         if ((around%is_panel .or. around%is_beam) .and. .not. around%on_base) &
+            around%thickness = inputs%target_thickness()
+         around%highest_frequency = highest_of_list(inputs%target)
          around%density = self%plate%density()
          around%base = inputs%base
-         if (inputs%base == base_free .and. .not. inputs%half_thickness > 0.0_wp) &
-            around%base = base_half_space
+         if (inputs%base == base_free .and. .not. (inputs%half_thickness > 0.0_wp &
+             .or. around%is_panel)) around%base = base_half_space
       end associate
    end subroutine set_surroundings
 
