@@ -6,6 +6,7 @@ module vcor_app_validity
    use vcor_rounded, only : percent, plain_number, short, significant
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : case_t, operator(==)
+   use vcor_case_catalogue, only : find_group
    use vcor_case_grid, only : coordinates, grid_t
    use vcor_case_checks, only : implausible_numbers, note_length
    use vcor_case_reading, only : reading_t
@@ -23,7 +24,7 @@ module vcor_app_validity
    implicit none
    private
 
-   public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
+   public :: mechanics_of, name_of_exact, solve_exact, measures_report, measures_remark, points_report, &
       points_remark, exact_points, about_numbers, warn_of_input, warn_of_data
 
    !> End of a line
@@ -60,10 +61,16 @@ contains
          //'alone, '//short(sweep%problem%impact%mass)//' kg, as if the second one could not ' &
          //'move; two free spheres need their reduced mass, m1 m2/(m1 + m2)'
       call case%get('contact', 'mechanics', mechanics)
-      if (mechanics == 'exact' .and. case%has_second_sphere() &
-          .and. .not. case%given('plate', 'waves')) &
+      if (mechanics == 'exact' .and. case%count('target') > 0 &
+          .and. .not. case%given('plate', 'waves')) then
          write (error_unit, '(a)') 'vcor: note: '//case%location('contact', 'mechanics') &
-         //": two spheres are no half space: mechanics = 'exact' leaves plate.waves = 'none'"
+            //": the surface moves with the structure: mechanics = 'exact' leaves plate.waves " &
+            //"= 'none'"
+      else if (mechanics == 'exact' .and. case%has_second_sphere() &
+               .and. .not. case%given('plate', 'waves')) then
+         write (error_unit, '(a)') 'vcor: note: '//case%location('contact', 'mechanics') &
+            //": two spheres are no half space: mechanics = 'exact' leaves plate.waves = 'none'"
+      end if
       if (case%given('impact', 'temperature') .or. any(swept_addresses(case) &
          == case%address('impact', 'temperature'))) return
       do i = 1, case%count('material')
@@ -96,6 +103,11 @@ contains
          if (.not. reading%has(case%address(trim(groups(i)), trim(keys(i))))) cycle
          call case%get(trim(groups(i)), trim(keys(i)), word)
          if (word == 'free') cycle
+         ! the surface moves with the structure
+         if (keys(i) == 'waves' .and. case%count('target') > 0) then
+            text = text//', '//structure_text(case)
+            cycle
+         end if
          if (present(exact) .and. keys(i) /= 'base') then
             word = trim(exact%law)
             if (i == 1) word = trim(exact%waves)
@@ -105,11 +117,59 @@ contains
       end do
       text = text(3:)
       ! a base that is forgotten
-      if (present(exact) .or. .not. reading%has(case%address('plate', 'base'))) return
+      if (present(exact) .or. .not. reading%has(case%address('plate', 'base')) &
+          .or. case%count('target') > 0) return
       call case%get('plate', 'base', word)
       if (word == 'free' .and. (case%given('plate', 'thickness') &
          .or. case%given('plate', 'half_thickness'))) text = text//', free on both sides'
    end function mechanics_of
+
+   !> The structure of a case in words
+   function structure_text(case) result(text)
+      type(case_t), intent(in) :: case
+      !> Such as `target beam cantilever`
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: word
+
+      call case%get('target', 'body', word)
+      text = 'target '//word
+      call case%get('target', 'support', word)
+      if (word /= '') text = text//' '//word
+   end function structure_text
+
+   !> Name of what `solve_exact` solves: with a plate or a beam only the contact is exact
+   function name_of_exact(case) result(name)
+      type(case_t), intent(in) :: case
+      !> `exact mechanics` or `receding contact`
+      character(len=:), allocatable :: name
+
+      character(len=:), allocatable :: body
+
+      name = 'exact mechanics'
+      if (case%count('target') == 0) return
+      call case%get('target', 'body', body)
+      if (body == 'plate' .or. body == 'beam') name = 'receding contact'
+   end function name_of_exact
+
+   !> Whether law and pair of a structure change nothing: they are exact, or the contact is elastic
+   function has_exact_contact(case) result(yes)
+      type(case_t), intent(in) :: case
+      logical :: yes
+
+      character(len=*), parameter :: bodies(2) = ['sphere', 'plate ']
+      character(len=:), allocatable :: law, pair
+      logical :: is_elastic(2)
+      integer :: i
+
+      call case%get('contact', 'law', law)
+      call case%get('contact', 'pair', pair)
+      do i = 1, size(bodies)
+         is_elastic(i) = any(case%model(find_group('material'), &
+            case%material_of(trim(bodies(i)))) == [character(len=7) :: 'rigid', 'elastic'])
+      end do
+      yes = all(is_elastic) .or. law == 'receding' .and. (pair == 'series' .or. any(is_elastic))
+   end function has_exact_contact
 
    !> Solve the impact of a case with the exact mechanics
    subroutine solve_exact(case, outcome, exact, is_shown)
@@ -127,7 +187,11 @@ contains
       is_shown = .false.
       if (waves == 'body' .and. outcome%is_coupled()) return
       exact = model_t(waves, 'receding', 'series')
-      if (.not. case%has_second_sphere()) exact%waves = 'body'
+      if (case%count('target') > 0) then
+         if (has_exact_contact(case)) return
+      else if (.not. case%has_second_sphere()) then
+         exact%waves = 'body'
+      end if
       call solve_model(case, exact, is_valid)
       if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
          ! a half space without density has no waves
@@ -218,6 +282,9 @@ contains
                words = 'exact mechanics is predicted to give cor_sphere ' &
                   //brief(max(outcome%cor_sphere + outcome%cor_deviation, 0.0_wp)) &
                   //"; compare mechanics = 'exact'"
+               if (surroundings%is_panel) words = 'without thin-plate theory cor_sphere is ' &
+                  //'predicted to be '//brief(max(outcome%cor_sphere + outcome%cor_deviation, &
+                  0.0_wp))
             end select
          end associate
       end function sentence
@@ -411,7 +478,7 @@ contains
          if (farthest > 0) text = text//'    largest difference found '//brief(largest) &
             //', predicted '//brief(deviation(farthest))//', '//coordinates(grid, farthest)//nl
       end associate
-      if (differs) text = '  cor_sphere with exact mechanics'//nl//text
+      if (differs) text = '  cor_sphere with '//name_of_exact(case)//nl//text
       if (.not. differs) text = ''
    end function exact_points
 

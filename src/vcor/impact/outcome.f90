@@ -135,6 +135,7 @@ module vcor_impact_outcome
       procedure :: misses
       procedure :: gains_energy
       procedure :: is_coupled
+      procedure :: has_structure
    end type outcome_t
 
 contains
@@ -259,6 +260,15 @@ contains
 
       is_coupled = ieee_is_nan(self%wave_energy) .and. .not. ieee_is_nan(self%energy_loss)
    end function is_coupled
+
+   !> Whether a structure was struck
+   elemental function has_structure(self)
+      !> The outcome of an impact that ended in separation
+      class(outcome_t), intent(in) :: self
+      logical :: has_structure
+
+      has_structure = .not. ieee_is_nan(self%first_cor_sphere)
+   end function has_structure
 
    !> Whether the sphere or the two bodies separate with more energy than they had, beyond the
    !> stated errors: the sum of all forces on it did work, or it sank so far that its weight did
