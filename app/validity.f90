@@ -446,6 +446,7 @@ contains
       allocate (known(size(summary%status)))
       known = summary%status == contact_separated
       if (.not. any(known)) return
+      if (case%count('target') > 0 .and. has_exact_contact(case)) return
       farthest = 0
       largest = 0.0_wp
       associate (cor => summary%values(quantity_place('cor_sphere'))%reals, &

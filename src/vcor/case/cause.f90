@@ -51,9 +51,11 @@ contains
          if (cause%group == 0 .or. entry%given .and. .not. is_given) cause = address
          is_given = is_given .or. entry%given
          associate (key => catalogue(address%row))
-            if (key%value_kind == list_key .and. entry%given) then
+            ! a place is one or two numbers
+            if (key%value_kind == list_key .and. entry%given &
+                .and. .not. groups(address%group)%optional) then
                found = found//' and '//integer_text(size(entry%list))//' '//trim(key%name)
-            else if (key%value_kind /= list_key .and. entry%present) then
+            else if ((key%value_kind /= list_key .or. entry%given) .and. entry%present) then
                found = found//' and '//trim(key%name)//' = ' &
                   //shortened(value_text(key, entry))
             end if

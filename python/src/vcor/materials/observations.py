@@ -615,7 +615,7 @@ def _arrays(data: pd.DataFrame) -> dict[str, Floats]:
 def materials_of(addresses: Sequence[str]) -> list[str]:
     """Names of the materials that addresses belong to."""
     names = dict.fromkeys(address.rpartition(".")[0] for address in addresses)
-    return [name for name in names if name not in ("impact", "sphere", "plate", "contact")]
+    return [name for name in names if name not in ("impact", "sphere", "plate", "target", "contact")]
 
 
 def gravity_of(case: Case) -> float:
