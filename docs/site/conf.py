@@ -34,7 +34,7 @@ suppress_warnings = ["misc.highlighting_failure"]
 PARTS = {
     "Begin": ["installation", "getting_started", "which_model", "tutorial"],
     "Inputs": ["materials", "data", "fitting", "dma_to_restitution"],
-    "Is it valid": ["validity", "impact", "layers", "accuracy", "faq"],
+    "Is it valid": ["validity", "impact", "layers", "structures", "accuracy", "faq"],
     "Sweeps and figures": ["sweeps", "figures", "gallery", "python", "distributed"],
     "Recipes": ["recipes", "rebound", "identification", "exchange", "cards", "measurements"],
     "Reference": ["commands", "input", "output", "library", "python_api", "reference_impacts",

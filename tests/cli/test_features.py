@@ -32,6 +32,7 @@ FEATURES = {
     "gravity": (", gravity = 9.81", STILL, "", "", STEEL + RUBBER),
     "volterra_order = 2": ("", STILL, "", "volterra_order = 2, volterra_coefficient = 0.1", STEEL + RUBBER),
     "continue_after_separation": ("", STILL, "", "continue_after_separation = .true.", STEEL + RUBBER),
+    "&target": ("", STILL, "", "", STEEL + RUBBER + "&target body = 'block', mass = 0.1 /\n"),
 }
 KEYS = {"gravity": ("impact", "9.81"), "time_step": ("solver", "1e-5"), "volterra_coefficient": ("solver", "0.1"),
         "form": ("solver", "a"), "quadrature": ("solver", "rectangle"), "volterra_order": ("solver", "1"),
