@@ -336,10 +336,13 @@ contains
       type(case_t), intent(in) :: self
       type(error_t), allocatable, intent(out) :: error
 
+      type(entry_t) :: entry
       character(len=:), allocatable :: base, body
 
       if (self%count('target') == 0) return
-      if (self%given('plate', 'extent')) then
+      entry = self%entry(self%address('plate', 'extent'))
+      ! what was set is refused with all that the impact does not read
+      if (entry%given .and. .not. allocated(entry%origin)) then
          call self%refuse('plate', 'extent', 1, 'found extent with &target, which has its edges: ' &
             //'expected no such key', error)
          return

@@ -129,6 +129,8 @@ contains
 
       character(len=*), parameter :: keys(*) = [character(len=14) :: 'base', 'waves', &
          'half_thickness', 'thickness', 'extent']
+      character(len=*), parameter :: thicknesses(*) = [character(len=14) :: 'half_thickness', &
+         'thickness']
       character(len=*), parameter :: at_rest = 'the plate is rigid and does not move'
       character(len=:), allocatable :: mechanics, text
       integer :: i
@@ -144,17 +146,26 @@ contains
          return
       end if
       call reading%mark(case%address('material', 'density', inputs%item(of_plate)))
-      call take(case, inputs, reading, 'plate', 'half_thickness')
-      if (.not. inputs%half_thickness > 0.0_wp) &
-         call take(case, inputs, reading, 'plate', 'thickness')
       call reading%get(case, 'plate', 'base', text)
       inputs%base = bases(findloc(base_names == text, .true., dim=1))
+      if (inputs%base == base_free .and. case%given('target', 'thickness')) then
+         do i = 1, size(thicknesses)
+            call reading%leave(case%address('plate', trim(thicknesses(i))), &
+               'target.thickness is that of the plate or beam')
+         end do
+      else
+         call take(case, inputs, reading, 'plate', 'half_thickness')
+         if (.not. inputs%half_thickness > 0.0_wp) &
+            call take(case, inputs, reading, 'plate', 'thickness')
+      end if
       call reading%get(case, 'plate', 'waves', text)
       inputs%waves = waves_of(text)
       call case%get('contact', 'mechanics', mechanics)
       inputs%waves_are_chosen = mechanics == 'exact' .and. .not. case%given('plate', 'waves') &
          .and. case%count('target') == 0
-      if (text == 'none') then
+      if (case%count('target') > 0) then
+         call reading%leave(case%address('plate', 'extent'), '&target has its edges')
+      else if (text == 'none') then
          call reading%leave(case%address('plate', 'extent'), &
             "with plate.waves = 'none' the plate does not move")
       else

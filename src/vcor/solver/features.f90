@@ -135,8 +135,8 @@ module vcor_solver_features
       refusal_t([paper, 0, 0], of_structure, "adams_bashforth marches the paper's wave equation " &
       //"of a plate; a struck structure is solved by 'ive', or 'direct' with scheme = 'product'", &
       'scheme body'), &
-      refusal_t([of_second_term, 0, 0], of_structure, 'a struck structure is solved with a force ' &
-      //'that is linear in u = s^1.5: expected volterra_order = 1', 'volterra_order body'), &
+      refusal_t([of_second_term, 0, 0], of_structure, 'the second term of the Volterra series is ' &
+      //'not solved with a structure: expected volterra_order = 1', 'volterra_order body'), &
       refusal_t([of_ghost, 0, 0], of_structure, 'a structure may strike again after the ' &
       //'separation, which is solved: continuing has no meaning', &
       'continue_after_separation body'), &
