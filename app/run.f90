@@ -5,7 +5,7 @@ module vcor_app_run
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : report
    use vcor_app_validity, only : about_numbers, measures_remark, &
-      measures_report, mechanics_of, name_of_exact, solve_exact, warn_of_data
+      measures_report, mechanics_of, name_of_exact, warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
@@ -21,7 +21,7 @@ module vcor_app_run
    use vcor_solver_type, only : light_plate
    use vcor_sweep_quantity, only : new_summary, row_of, summary_t
    use vcor_sweep_points, only : solve_point, worker_t
-   use vcor_verify_models, only : model_t
+   use vcor_verify_models, only : model_t, solve_exact
    use vcor_words, only : joined
    implicit none
    private

@@ -6,7 +6,6 @@ module vcor_app_validity
    use vcor_rounded, only : percent, plain_number, short, significant
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : case_t, operator(==)
-   use vcor_case_catalogue, only : find_group
    use vcor_case_grid, only : coordinates, grid_t
    use vcor_case_checks, only : implausible_numbers, note_length
    use vcor_case_reading, only : reading_t
@@ -20,11 +19,11 @@ module vcor_app_validity
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_number, only : real_text
    use vcor_text, only : integer_text, printable
-   use vcor_verify_models, only : differ, model_t, solve_model
+   use vcor_verify_models, only : has_exact_contact, model_t, solve_exact
    implicit none
    private
 
-   public :: mechanics_of, name_of_exact, solve_exact, measures_report, measures_remark, points_report, &
+   public :: mechanics_of, name_of_exact, measures_report, measures_remark, points_report, &
       points_remark, exact_points, about_numbers, warn_of_input, warn_of_data
 
    !> End of a line
@@ -34,7 +33,7 @@ module vcor_app_validity
       'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
       'energy_loss', 'energy_imbalance', 'contact_ratio', 'needed_extent', &
       'deflection_ratio', 'weight_ratio', 'mean_pressure', 'cor_deviation', 'layer_strain', &
-      'mass_ratio', 'highest_mode', 'contacts']
+      'mass_ratio', 'axis_tension', 'highest_mode', 'contacts']
 
 contains
 
@@ -152,56 +151,6 @@ contains
       if (body == 'plate' .or. body == 'beam') name = 'receding contact'
    end function name_of_exact
 
-   !> Whether law and pair of a structure change nothing: they are exact, or the contact is elastic
-   function has_exact_contact(case) result(yes)
-      type(case_t), intent(in) :: case
-      logical :: yes
-
-      character(len=*), parameter :: bodies(2) = ['sphere', 'plate ']
-      character(len=:), allocatable :: law, pair
-      logical :: is_elastic(2)
-      integer :: i
-
-      call case%get('contact', 'law', law)
-      call case%get('contact', 'pair', pair)
-      do i = 1, size(bodies)
-         is_elastic(i) = any(case%model(find_group('material'), &
-            case%material_of(trim(bodies(i)))) == [character(len=7) :: 'rigid', 'elastic'])
-      end do
-      yes = all(is_elastic) .or. law == 'receding' .and. (pair == 'series' .or. any(is_elastic))
-   end function has_exact_contact
-
-   !> Solve the impact of a case with the exact mechanics
-   subroutine solve_exact(case, outcome, exact, is_shown)
-      type(case_t), intent(in) :: case
-      type(outcome_t), intent(in) :: outcome
-      !> Outcome with the exact mechanics
-      type(model_t), intent(out) :: exact
-      !> Whether it differs from the given outcome, or does not exist
-      logical, intent(out) :: is_shown
-
-      character(len=:), allocatable :: waves
-      logical :: is_valid
-
-      call case%get('plate', 'waves', waves)
-      is_shown = .false.
-      if (waves == 'body' .and. outcome%is_coupled()) return
-      exact = model_t(waves, 'receding', 'series')
-      if (case%count('target') > 0) then
-         if (has_exact_contact(case)) return
-      else if (.not. case%has_second_sphere()) then
-         exact%waves = 'body'
-      end if
-      call solve_model(case, exact, is_valid)
-      if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
-         ! a half space without density has no waves
-         exact = model_t(waves, 'receding', 'series')
-         call solve_model(case, exact, is_valid)
-      end if
-      is_shown = allocated(exact%failure)
-      if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
-   end subroutine solve_exact
-
    !> The level of an impact, a line for each measure that is not good, and one line for the good
    !> ones
    function measures_report(outcome, surroundings) result(text)
@@ -273,6 +222,9 @@ contains
             case ('mean_pressure')
                words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
                   //'too high; take a slower impact'
+            case ('axis_tension')
+               words = 'around the axis the contact pulls with '//percent(value)//' of its mean ' &
+                  //'pressure, where a real one opens; take a slower or a smaller body'
             case ('energy_loss')
                words = gain()
             case ('mass_ratio')
@@ -418,13 +370,15 @@ contains
       outcome%cor_deviation = summary%values(places(14))%reals(point)
       outcome%layer_strain = summary%values(places(15))%reals(point)
       outcome%mass_ratio = summary%values(places(16))%reals(point)
-      outcome%highest_mode = summary%values(places(17))%reals(point)
-      outcome%contacts = summary%values(places(18))%integers(point)
+      outcome%axis_tension = summary%values(places(17))%reals(point)
+      outcome%highest_mode = summary%values(places(18))%reals(point)
+      outcome%contacts = summary%values(places(19))%integers(point)
    end function outcome_at
 
    !> Restitution of the sphere with exact mechanics at the first and the last point with a result,
    !> at those of the smallest and the largest value, and at those of the largest predicted
-   !> deviations; and the largest difference that is found beside the predicted one
+   !> deviations, as long as that takes little time; and the largest difference that is found
+   !> beside the predicted one
    function exact_points(case, grid, summary) result(text)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -434,11 +388,13 @@ contains
 
       character(len=*), parameter :: labels(9) = [character(len=8) :: 'first', 'last', 'smallest', &
          'largest', '', '', '', '', '']
+      ! time of the processor after which no other point is solved [s]
+      real(wp), parameter :: longest = 0.2_wp
       type(model_t) :: exact
       logical, allocatable :: known(:)
       logical :: differs, is_shown
       integer :: points(size(labels)), i, farthest
-      real(wp) :: difference, largest
+      real(wp) :: difference, largest, start, now
       character(len=:), allocatable :: value
 
       text = ''
@@ -458,7 +414,10 @@ contains
             points(i) = maxloc(abs(deviation), dim=1, mask=known)
             if (points(i) > 0) known(points(i)) = .false.
          end do
+         call cpu_time(start)
          do i = 1, size(points)
+            call cpu_time(now)
+            if (now - start > longest) exit
             if (points(i) == 0 .or. any(points(:i - 1) == points(i))) cycle
             call solve_exact(grid%case_at(case, points(i)), outcome_at(summary, &
                places_of_measures(), points(i)), exact, is_shown)

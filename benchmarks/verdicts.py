@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """How far each verdict is off: draws impacts, solves them with exact mechanics, and prints a table.
 
-    verdicts.py [--seed N] [--count 300] [--only CLASS,...] [--worst N]
+    verdicts.py [--seed N] [--count 300] [--only CLASS;...] [--worst N] [--write [TABLE]]
 
 Radius 0.5 to 20 mm, velocity 0.1 to 20 m/s, thickness 0.3 to 20 radii, all log-uniform; the materials of
-examples/materials, and power laws and Prony series with loss tangents up to 1 at the frequency of the contact.
+examples/materials, and power laws and Prony series with loss tangents up to 1 at the frequency of the contact. Other
+shapes are cones, punches, bodies of revolution and true spheres of the same mass, on plates and half spaces, half of
+them with their weight.
 Impacts whose cor_sphere, as computed or exact, is below 0.02 are drawn again. Only `cor_deviation` is judged here,
 without the measures of other things (contact_ratio, extent). --worst prints the impacts of each class that
-are farthest from their prediction. Takes about ten minutes. Needs the Python package (PYTHONPATH=python/src and
+are farthest from their prediction. --write puts the table into docs/validity.md, and how many verdicts of all classes
+together are right into the sentences of the help, the legend of figures, the FAQ and that page; with a file it takes
+the table that was printed into it. Takes about ten minutes. Needs the Python package (PYTHONPATH=python/src and
 VCOR_LIBRARY=build/release/libvcor_python.so will do).
 """
 
@@ -17,6 +21,7 @@ import os
 import re
 import sys
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,6 +41,7 @@ CLASSES = {
     "none, half spaces": ("none", None, None),
     "none, layers": ("none", None, None),
     "pairs of beads": ("none", None, None),
+    "other shapes": ("none", None, None),
 }
 #: Smallest restitution that is drawn, and largest loss tangent
 LEAST, LOSSY = 0.02, 1.0
@@ -63,9 +69,15 @@ class Impact:
     exact: float
     predicted: float
 
+    def excess(self, limit: tuple[float, float]) -> float:
+        """Difference to the exact restitution over a limit, which is a share of the computed one."""
+        return abs(self.exact - self.computed) / max(
+            limit[0] * self.computed, limit[1]
+        )
+
     def is_within(self, limit: tuple[float, float]) -> bool:
         """Whether the exact restitution is within a limit."""
-        return abs(self.exact - self.computed) <= max(limit[0] * self.exact, limit[1])
+        return self.excess(limit) <= 1.0
 
     def level(self) -> str:
         """The verdict by the predicted change alone."""
@@ -124,12 +136,29 @@ def rigid(rng: np.random.Generator) -> Material:
     return Material(f"model = 'rigid', density = {density}", density, rigid=True)
 
 
+def shape(rng: np.random.Generator, radius: float, density: float) -> str:
+    """A body that is not a paraboloid, as heavy as the ball of this radius and about as blunt."""
+    name = rng.choice(["cone", "punch", "power", "true_sphere"])
+    if name == "true_sphere":
+        return f"shape = 'true_sphere', radius = {radius:.6e}"
+    mass = 4 / 3 * math.pi * radius**3 * density
+    if name == "cone":
+        key = f"half_angle = {rng.uniform(45, 85):.3f}"
+    elif name == "punch":
+        key = f"punch_radius = {radius * rng.uniform(0.05, 0.5):.6e}"
+    else:
+        power = rng.uniform(1.2, 6)
+        key = f"profile_power = {power:.4f}, profile_coefficient = {0.5 * radius ** (1 - power):.6e}"
+    return f"shape = '{name}', mass = {mass:.6e}, {key}"
+
+
 def draw(name: str, rng: np.random.Generator, known: list[Material]) -> tuple[str, str]:
     """An impact of a class: its case with the mechanics of the class, and with exact ones."""
 
     def any_of() -> Material:
         return known[rng.integers(len(known))] if rng.random() < 0.5 else relaxing(rng)
 
+    gravity, body = "0", ""
     radius, velocity = 5e-4 * 40 ** rng.random(), 0.1 * 200 ** rng.random()
     thickness = radius * 0.3 * (20 / 0.3) ** rng.random()
     hard = [one for one in known if one.elastic]
@@ -162,19 +191,26 @@ def draw(name: str, rng: np.random.Generator, known: list[Material]) -> tuple[st
         masses = ball.density * radius**3, plate.density * other**3
         of_plate = f"surface_radius = {other:.6e}"
         mass = f", mass = {4 / 3 * math.pi * masses[0] * masses[1] / sum(masses):.6e}"
+    elif name == "other shapes":
+        body = shape(rng, radius, ball.density)
+        gravity = rng.choice(["0", "9.81"])
+        if rng.random() < 0.5:
+            of_plate = ""
 
     def text(waves: str, law: str, pair: str) -> str:
         return (
-            f"&impact velocity = {velocity:.6e}, gravity = 0 /\n"
-            f"&sphere radius = {radius:.6e}, material = 'ball'{mass} /\n"
+            f"&impact velocity = {velocity:.6e}, gravity = {gravity} /\n"
+            f"&sphere {body or f'radius = {radius:.6e}'}, material = 'ball'{mass} /\n"
             f"&plate material = 'plate', waves = '{waves}'{', ' if of_plate else ''}{of_plate} /\n"
             f"&contact law = '{law}', pair = '{pair}' /\n"
             f"&material name = 'ball', {ball.text} /\n&material name = 'plate', {plate.text} /\n"
         )
 
-    return text(waves, law, pair), text(
-        "none" if mass else "body", "receding", "series"
-    )
+    exact = "receding"
+    if "'punch'" in body:
+        # its contact has one radius
+        exact = law = "boltzmann"
+    return text(waves, law, pair), text("none" if mass else "body", exact, "series")
 
 
 def solve(name: str, rng: np.random.Generator, known: list[Material]) -> Impact | None:
@@ -205,6 +241,77 @@ def share(part: list[Impact], whole: list[Impact]) -> str:
     )
 
 
+HEAD = (
+    "| class | `good` within 2 % or 0.01 | worst, times that | `caution` within 10 % or 0.05 | of those within 2 % or "
+    "0.01, `good` | of those far off, `outside` | far off and `good` |\n"
+    "| --- | --- | --: | --- | --- | --- | --: |"
+)
+#: Sentences with the shares of `good` and `caution` that are right, in 100: the text before the number and after it
+SENTENCES = {
+    "app/help.f90": (
+        (r"\(", r" of 100 random impacts\), caution", "good"),
+        (r"\(", r" of 100\), outside", "caution"),
+    ),
+    "python/src/vcor/plot.py": (
+        ("with caution: ", " of 100 within 10 %", "caution"),
+    ),
+    "docs/faq.md": (
+        (r"the model's \(", r" of 100 random\n", "good"),
+        (r"exact mechanics, ", r" of 100 with `caution` within", "caution"),
+    ),
+    "docs/validity.md": (
+        (r"`good` means within 2 % or 0.01 \(", r" of 100\)", "good"),
+        (r"`caution` within\n  10 % or 0.05 \(", r" of 100\)", "caution"),
+    ),
+}
+
+
+def shares(table: str) -> dict[str, int]:
+    """Right verdicts of all classes of a table together, in 100, rounded down."""
+    found = {}
+    for verdict, column in (("good", 2), ("caution", 4)):
+        counts = [
+            re.match(r" (\d+)/(\d+)", line.split("|")[column])
+            for line in table.splitlines()
+        ]
+        known = [one for one in counts if one]
+        right, all_of = (sum(int(one[i]) for one in known) for i in (1, 2))
+        found[verdict] = 100 * right // all_of
+    return found
+
+
+def table_of_page() -> str:
+    """The table in docs/validity.md."""
+    page = (TOP / "docs/validity.md").read_text(encoding="utf-8")
+    start = page.index(HEAD)
+    return page[start : page.index("\n\n", start)]
+
+
+def places(table: str) -> Iterator[tuple[Path, str, str]]:
+    """Each file with a sentence, what it says and what it should say."""
+    found = shares(table)
+    for name, sentences in SENTENCES.items():
+        path = TOP / name
+        text = path.read_text(encoding="utf-8")
+        for before, after, verdict in sentences:
+            matches = re.findall(rf"{before}(\d+){after}", text)
+            if len(matches) != 1:
+                raise LookupError(f"{name} has {len(matches)} sentences '{before}N{after}', expected one")
+        right = text
+        for before, after, verdict in sentences:
+            right = re.sub(rf"({before})\d+({after})", rf"\g<1>{found[verdict]}\g<2>", right)
+        yield path, text, right
+
+
+def write(table: str) -> None:
+    """Put a table and its sentences into the pages."""
+    path = TOP / "docs/validity.md"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace(table_of_page(), table.strip()), encoding="utf-8")
+    for file, _, right in places(table):
+        file.write_text(right, encoding="utf-8")
+
+
 def report(name: str, impacts: list[Impact]) -> str:
     """How far each verdict of a class is off, a row of the table."""
     by = {
@@ -213,13 +320,7 @@ def report(name: str, impacts: list[Impact]) -> str:
     }
     close = [one for one in impacts if one.is_within(GOOD)]
     far = [one for one in impacts if not one.is_within(CAUTION)]
-    worst = max(
-        (
-            abs(one.exact - one.computed) / max(GOOD[0] * one.exact, GOOD[1])
-            for one in by["good"]
-        ),
-        default=0.0,
-    )
+    worst = max((one.excess(GOOD) for one in by["good"]), default=0.0)
     cells = [
         name,
         share([one for one in by["good"] if one.is_within(GOOD)], by["good"]),
@@ -244,13 +345,16 @@ def main() -> None:
     parser.add_argument(
         "--worst", type=int, default=0, help="impacts to print of each class"
     )
-    options = parser.parse_args()
-    known = examples()
-    print(
-        "| class | `good` within 2 % or 0.01 | worst, times that | `caution` within 10 % or 0.05 | of those within 2 % or "
-        "0.01 `good` | of those beyond 10 % and 0.05 `outside` | `good` |"
+    parser.add_argument(
+        "--write", nargs="?", const="", metavar="TABLE", help="write the pages; from a table"
     )
-    print("| --- | --- | --: | --- | --- | --- | --: |")
+    options = parser.parse_args()
+    if options.write:
+        write(Path(options.write).read_text(encoding="utf-8"))
+        return
+    known = examples()
+    lines = [HEAD]
+    print(HEAD)
     for index, name in enumerate(CLASSES):
         if options.only and not any(
             name.startswith(one) for one in options.only.split(";")
@@ -262,13 +366,16 @@ def main() -> None:
             one = solve(name, rng, known)
             if one is not None:
                 impacts.append(one)
-        print(report(name, impacts), flush=True)
+        lines.append(report(name, impacts))
+        print(lines[-1], flush=True)
         impacts.sort(key=lambda one: -abs(one.exact - one.computed - one.predicted))
         for one in impacts[: options.worst]:
             print(
                 f"computed {one.computed:.4f}, exact {one.exact:.4f}, predicted {one.computed + one.predicted:.4f}\n{one.case}",
                 file=sys.stderr,
             )
+    if options.write is not None:
+        write("\n".join(lines))
 
 
 if __name__ == "__main__":

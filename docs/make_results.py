@@ -16,10 +16,20 @@ ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
 
 
-def curve(axis, case, address, values, label=None, quantity="cor_sphere", scale=1.0):
-    """A quantity over one number of a case."""
-    found = case.sweep({address: values}, quantities=[quantity], progress=False)
-    axis.plot(scale * values, found[quantity], marker="", label=label)
+def draw(axis, x, found, label=None):
+    """cor_sphere over x, dashed where it is outside the validity of the model."""
+    y, outside = found.cor_sphere.values, found.validity.values == "outside"
+    (line,) = axis.plot(x, np.where(outside, np.nan, y), "-", marker="", label=label)
+    # up to the next points that are not
+    near = outside | np.roll(outside, 1) | np.roll(outside, -1)
+    near[[0, -1]] = outside[[0, -1]] | outside[[1, -2]]
+    axis.plot(x, np.where(near, y, np.nan), "--", marker="", color=line.get_color(), zorder=line.zorder - 0.1)
+
+
+def curve(axis, case, address, values, label=None, scale=1.0):
+    """The restitution over one number of a case."""
+    found = case.sweep({address: values}, quantities=["cor_sphere", "validity"], progress=False)
+    draw(axis, scale * values, found, label)
 
 
 def plate(axis):
@@ -44,8 +54,8 @@ def ball(axis):
     for height in (0.25, 2.5, 25.0):
         case = vcor.read(EXAMPLES / "sweeps" / "squash_ball.nml")
         case["impact.drop_height"] = height
-        found = case.sweep({"impact.temperature": kelvin}, quantities=["cor_sphere"], progress=False)
-        axis.plot(kelvin - 273.15, found.cor_sphere, marker="", label=f"{height:g} m")
+        found = case.sweep({"impact.temperature": kelvin}, quantities=["cor_sphere", "validity"], progress=False)
+        draw(axis, kelvin - 273.15, found, f"{height:g} m")
     axis.set(title="(b) butyl ball on a floor", xlabel="temperature [°C]", ylim=(0.2, 0.5))
 
 

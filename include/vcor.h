@@ -203,6 +203,10 @@ int vcor_time_factor(const vcor_case *self, const char *material, double *factor
  * separate. Methods that contradict each other are an error. */
 int vcor_verify(vcor_case *self, double *results, vcor_error *error);
 
+/* cor_sphere of the case, a single impact, with exact mechanics; nan if it has none. It is that of the
+ * case itself where that has them already. */
+int vcor_exact(vcor_case *self, double *cor_sphere, vcor_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -104,6 +104,7 @@ def arguments(case):
         },
         "vcor_time_factor": {"case": case, "material": b"rubber", "factor": byref(number)},
         "vcor_verify": {"case": case, "results": doubles(*[0.0] * 200)},
+        "vcor_exact": {"case": case, "cor_sphere": byref(number)},
     }  # fmt: skip
 
 

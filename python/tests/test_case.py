@@ -85,6 +85,19 @@ def test_a_sweep(program, tmp_path, threads):
     assert cube["sphere.radius"].attrs["units"] == "m"
 
 
+def test_exact_mechanics_beside_a_single_impact():
+    """The dataset has the restitution of exact mechanics, its own where it has them."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", vcor.ValidityWarning)
+        case = vcor.read(PAPER / "sls.nml")
+        exact = case.copy()
+        exact["plate.waves"], exact["contact.law"] = "body", "receding"
+        expected = exact.solve()["cor_sphere"]
+        assert case.run().attrs["exact_cor_sphere"] == expected
+        assert exact.run().attrs["exact_cor_sphere"] == expected
+        assert "exact_cor_sphere" not in case.sweep({"impact.velocity": [1.0, 2.0]}).attrs
+
+
 def test_every_column_is_that_of_the_csv_file(program, tmp_path):
     """run, sweep, points and solve give the same bits as the program, in every column."""
     path = SWEEPS / "velocity_and_radius.nml"

@@ -228,7 +228,7 @@ def test_caution_has_hatching_of_its_own():
         made = figure([data])
         assert texts(made)[-2:] == [
             "outside of the model's validity",
-            "with caution: off by a few per cent",
+            "with caution: 99 of 100 within 10 % or 0.05",
         ]
     spans = [patch for patch in figure([found]).axes[0].patches if patch.get_hatch()]
     assert [patch.get_hatch() for patch in spans] == ["/////", "//"]

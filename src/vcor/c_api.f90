@@ -20,7 +20,7 @@ module vcor_c_api
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_history, only : history
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : history_steps
+   use vcor_impact_trajectory, only : history_steps, trajectory_t
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
@@ -32,6 +32,7 @@ module vcor_c_api
    use vcor_number, only : real_text
    use vcor_text, only : integer_text, shortened
    use vcor_verify_methods, only : attempt_first, compare, compared_names, comparison_t
+   use vcor_verify_models, only : model_t, solve_exact
    use vcor_version, only : version
    use vcor_words, only : suggestion
    implicit none
@@ -39,7 +40,7 @@ module vcor_c_api
 
    public :: vcor_library_version, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
       vcor_warnings, vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, &
-      vcor_verify
+      vcor_verify, vcor_exact
 
    !> Tables for `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
@@ -588,5 +589,44 @@ contains
       end if
       code = report_error(trouble, error)
    end function vcor_verify
+
+   !> Solve the case with exact mechanics
+   function vcor_exact(self, cor_sphere, error) bind(c) result(code)
+      type(c_ptr), value :: self, cor_sphere, error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(case_t) :: case
+      type(problem_t) :: problem
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(model_t) :: exact
+      type(address_t) :: none(0)
+      real(wp) :: nothing(0, 1)
+      real(c_double), pointer :: place(:)
+      logical :: differs
+
+      call open_case(self, handle, trouble)
+      call get_array(1_c_int, cor_sphere, 'cor_sphere', place, trouble)
+!$omp critical (vcor_c_api)
+      if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
+      if (.not. allocated(trouble)) then
+         case = handle%case
+         problem = handle%sweep%problem
+      end if
+!$omp end critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         place = ieee_value(1.0_wp, ieee_quiet_nan)
+         ! that the case has no result of its own does not matter
+         call problem%solve(trajectory, outcome, trouble)
+         if (allocated(trouble)) deallocate (trouble)
+         call solve_exact(case, outcome, exact, differs)
+         ! the mechanics of the case are exact
+         if (exact%waves == '') exact%outcome = outcome
+         place = exact%outcome%cor_sphere
+      end if
+      code = report_error(trouble, error)
+   end function vcor_exact
 
 end module vcor_c_api

@@ -56,6 +56,7 @@ NAMES = [
     "weight_ratio",
     "mass_ratio",
     "mean_pressure",
+    "axis_tension",
     "cor_deviation",
     "wave_loss",
     "peak_loss_tangent",

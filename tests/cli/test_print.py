@@ -74,13 +74,15 @@ def test_full_precision(vcor, model):
                 assert values[name] == row[name] == stored.decode()
             else:
                 numbers = [float(values[name]), stored, float(row[name])]
-                # a sphere that is not dropped has no height of rebound, a free plate no base
+                # a sphere that is not dropped has no height of rebound, a free plate no base, and
+                # only a coupled contact has a pressure of its own
                 if name in (
                     "rebound_height",
                     "layer_ratio",
                     "layer_stiffening",
                     "layer_strain",
                     "highest_mode",
+                    "axis_tension",
                 ) or (name == "inelasticity" and model == "power_law"):
                     assert all(map(math.isnan, numbers))
                 else:

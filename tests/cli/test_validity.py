@@ -120,6 +120,38 @@ def test_light_ball_on_a_layer(vcor):
     assert (row["validity"], row["validity_cause"]) == ("outside", "cor_deviation")
 
 
+@pytest.mark.parametrize("gravity", ["0", "9.81"])
+def test_waves_under_a_weight(vcor, gravity):
+    """The weight makes the pulse larger, and what waves take of it: 2.5 times for a cone that is dropped on gel."""
+    text = (ROOT / "examples" / "cone_into_gel.nml").read_text(encoding="utf-8").replace("9.81 ", gravity)
+    row = numbers(vcor, text)
+    change = exact_of(vcor, text) - row["cor_sphere"]
+    assert change == pytest.approx(-0.051 if gravity != "0" else -0.020, abs=1e-3)
+    # of first order
+    assert row["cor_deviation"] == pytest.approx(change, rel=0.2)
+    assert (row["validity"], row["validity_cause"]) == ("caution", "cor_deviation")
+
+
+PUNCH = """&impact velocity = 1, gravity = 0 /
+&sphere shape = 'punch', punch_radius = 1.2e-3, mass = 5.5e-5, material = 'punch' /
+&plate material = 'foam', waves = 'body', thickness = 0.6e-3, base = 'sliding' /
+&contact law = 'boltzmann' /
+&solver accuracy = 3e-3 /
+&material name = 'punch', model = 'rigid' /
+&material name = 'foam', model = 'elastic', modulus = 0.66e6, poisson_ratio = 0.2, density = 1100 /
+"""
+
+
+def test_tension_under_a_contact(vcor):
+    """Waves of a thin layer meet under the axis of a punch, and pull; not on a thick one."""
+    row = numbers(vcor, PUNCH)
+    assert row["axis_tension"] > 0.02
+    assert row["validity"] != "good" and row["validity_cause"] == "axis_tension"
+    assert "caution: axis_tension" in screen(vcor, PUNCH) or "outside: axis_tension" in screen(vcor, PUNCH)
+    assert numbers(vcor, PUNCH, "--set", "plate.thickness=0.05")["axis_tension"] < 0.01
+    assert math.isnan(numbers(vcor, SLS)["axis_tension"])
+
+
 def test_contact_law_and_pair_are_judged(vcor):
     """What receding and series change, without waves: on a rubber as lossy as that of the paper, and of two polymers."""
     text = SLS.replace("half_thickness", "extent")
@@ -165,6 +197,17 @@ def test_extent_of_a_layer(vcor):
         assert math.isnan(row["plate_wave_number"])
 
 
+# A ball ten thousand times as heavy as the sheet that lies in its shadow
+SHEET = """&impact velocity = 0.138, gravity = 9.81 /
+&sphere radius = 2.0643e-5, mass = 3.081e-7, material = 'ball' /
+&plate material = 'sheet', waves = 'body', thickness = 2.98039e-7 /
+&contact law = 'receding' /
+&material name = 'ball', model = 'rigid' /
+&material name = 'sheet', model = 'prony', equilibrium_modulus = 3.241e6, moduli = 4.363e7, rates = 12.29,
+   poisson_ratio = 0.5, density = 2.9e4 /
+"""
+
+
 def test_forgotten_base(vcor):
     """The mechanics say that the plate is free, and a sheet that is too light to throw the ball back names the base."""
     assert ", free on both sides" in screen(vcor, SLS)
@@ -173,6 +216,13 @@ def test_forgotten_base(vcor):
     vcor.write(thin)
     done = vcor("run", "case.nml", "--print", "cor")
     assert "plate.base" in done.err and "end_time" not in done.err
+    # one impact, and one whose contact nothing can resolve
+    vcor.write(SLS)
+    done = vcor("run", "case.nml", "--set", "plate.half_thickness=1e-4", "--print", "cor")
+    assert done.code == 5 and "plate.base" in done.err and "end_time" not in done.err
+    vcor.write(SHEET)
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == 5 and "no pressure balances" in done.err and "plate.base" in done.err
 
 
 @pytest.mark.parametrize("name", ["half_space_loss", "bending_loss"])
@@ -367,7 +417,7 @@ def test_what_a_plate_with_waves_contains(vcor):
     out = screen(vcor, SLS, "--set", "plate.waves=body")
     row = numbers(vcor, SLS, "--set", "plate.waves=body")
     judged = re.findall(r"(\w+) [0-9.E+-]+(?:[:,]|$)", out.split("validity: ")[1].split("note")[0], re.MULTILINE)
-    assert set(judged) == {"contact_ratio", "weight_ratio", "mass_ratio", "cor_deviation"}
+    assert set(judged) == {"contact_ratio", "weight_ratio", "mass_ratio", "axis_tension", "cor_deviation"}
     assert row["cor_deviation"] == 0 and row["wave_loss"] == 0
     for name in ("hysteresis_energy", "wave_energy", "deflection_ratio", "inelasticity"):
         assert math.isnan(row[name]), name
@@ -576,3 +626,17 @@ def test_slips_of_a_sweep(vcor):
 @pytest.mark.parametrize("path", [*EXAMPLES, *SWEEPS], ids=lambda path: path.stem)
 def test_examples_are_plausible(vcor, path):
     assert "warning" not in vcor("check", path).err
+
+
+def test_largest_difference_of_a_sweep(vcor):
+    """The screen of a sweep solves some points exactly, and shows the largest difference beside the predicted one."""
+    text = SLS + "&sweep parameter = 'impact.velocity', values = 1, 2, 3, 4 /\n"
+    out = screen(vcor, text)
+    ((difference, predicted, velocity),) = re.findall(
+        r"^    largest difference found (\S+), predicted (\S+), impact.velocity = (\S+)$", out, re.MULTILINE)
+    row = numbers(vcor, SLS, "--set", f"impact.velocity={velocity}")
+    assert float(predicted) == pytest.approx(row["cor_deviation"], rel=0.01)
+    exact = exact_of(vcor, SLS, "--set", f"impact.velocity={velocity}")
+    assert float(difference) == pytest.approx(exact - row["cor_sphere"], rel=0.01)
+    shown = re.findall(r"^    (first|last|smallest|largest), impact.velocity = .*, exact ", out, re.MULTILINE)
+    assert shown[0] == "first" and len(shown) <= 4

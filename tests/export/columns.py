@@ -38,6 +38,7 @@ SUMMARY = {
     "weight_ratio": "1",
     "mass_ratio": "1",
     "mean_pressure": "Pa",
+    "axis_tension": "1",
     "cor_deviation": "1",
     "wave_loss": "1",
     "peak_loss_tangent": "1",

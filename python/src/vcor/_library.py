@@ -190,6 +190,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
     "vcor_time_factor": [c_void_p, c_char_p, POINTER(c_double)],
     "vcor_verify": [c_void_p, _doubles],
+    "vcor_exact": [c_void_p, POINTER(c_double)],
 }  # fmt: skip
 for _name, _types in _ARGUMENTS.items():
     getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]

@@ -8,7 +8,7 @@ import os
 import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from ctypes import byref, c_char_p, c_int, c_void_p
+from ctypes import byref, c_char_p, c_double, c_int, c_void_p
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -225,7 +225,9 @@ class Case:
             over the parameters that the case varies. `attrs["units"]` has the unit of each.
             `attrs["validity"]` of the dataset is "good", or how many points are not and by which
             measures, with a `ValidityWarning`; `attrs["beyond_data"]` has what the data behind the
-            materials do not cover, a line each, with a `DataRangeWarning`.
+            materials do not cover, a line each, with a `DataRangeWarning`. For a single impact
+            `attrs["exact_cor_sphere"]` is cor_sphere with `mechanics = 'exact'`, nan if it has
+            none; it takes a second solution, which `solve` does not do.
 
         Raises
         ------
@@ -248,6 +250,9 @@ class Case:
             raise
         made = self._dataset(names, values, {})
         made.attrs |= _coverage.about(self, [], point, values)
+        exact = c_double()
+        call("vcor_exact", self._pointer, byref(exact))
+        made.attrs["exact_cor_sphere"] = exact.value
         return made
 
     def solve(

@@ -72,7 +72,7 @@ _WORDS = {
 }
 #: Hatching by what the column validity says, and its text
 _HATCHES = {"outside": ("/////", "outside of the model's validity"),
-            "caution": ("//", "with caution: off by a few per cent")}  # fmt: skip
+            "caution": ("//", "with caution: 99 of 100 within 10 % or 0.05")}  # fmt: skip
 #: Most lines of a text in a legend
 _MOST_LINES = 20
 #: Letters of a label for an inch, and the width of a panel that its numbers take [in]

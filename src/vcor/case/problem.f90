@@ -24,7 +24,7 @@ module vcor_case_problem
    use vcor_case_structure, only : build_structure, highest_of_list
    use vcor_case_reader, only : read_inputs
    use vcor_case_reading, only : reading_t
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law, profile_factor, &
@@ -35,7 +35,7 @@ module vcor_case_problem
    use vcor_impact_structure, only : structure_t
    use vcor_impact_target, only : new_plate, waves_none
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
-   use vcor_impact_validity, only : assess, surroundings_t
+   use vcor_impact_validity, only : assess, forgotten_base, surroundings_t
    use vcor_kinds, only : standard_gravity, wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_t
@@ -354,7 +354,14 @@ contains
          return
       end if
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
-      if (allocated(error) .or. outcome%status /= contact_separated) return
+      if (allocated(error)) then
+         if (error%code == error_numerical .and. self%surroundings%has_body) then
+            if (self%surroundings%is_lighter(self%impact)) &
+               error%message = error%message//'; '//forgotten_base
+         end if
+         return
+      end if
+      if (outcome%status /= contact_separated) return
       if (self%surroundings%is_panel .or. self%surroundings%is_beam) then
          call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate, &
             self%carrier)

@@ -69,13 +69,14 @@ contains
 
       ! second order in the loss: measured on half spaces, where half of the energy is missing
       real(wp), parameter :: second = 0.3_wp
-      ! where parts of opposite sign cancel, what is left is trusted to this share of their sum
+      ! where parts of opposite sign cancel, what is left is at least this share of their sum, or
+      ! eta^2: a plate that takes nearly all skews the pulse, which the correlation leaves out
       real(wp), parameter :: trust = 0.2_wp
       ! beyond, exp has no meaning
       real(wp), parameter :: most = 5.0_wp
       type(face_losses_t) :: face
       complex(wp) :: series
-      real(wp) :: e, eta, slope, change, part, whole, more
+      real(wp) :: e, eta, slope, change, part, whole, weight, more
 
       e = floor_of(outcome%cor_sphere)
       eta = -log(e)/pi
@@ -102,10 +103,14 @@ contains
             whole = whole + more
          end if
       end if
-      change = sign(max(abs(change), trust*whole), change)
+      change = sign(max(abs(change), max(trust, eta**2)*whole), change)
+      ! under the weight the pulse is larger than the impulse of the impact, and so is that of the
+      ! adjoint motion, which meets the bodies with the velocity of their separation
+      weight = impact%gravity*outcome%contact_time/impact%velocity
+      change = change*(1.0_wp + 0.5_wp*weight)*(1.0_wp + 0.5_wp*weight/e)
       outcome%cor_deviation = e*(exp(min(max(change, -most), most)) - 1.0_wp)
       if (.not. present(losses)) return
-      part = (0.5_wp*(1.0_wp + e))**2
+      part = (0.5_wp*(1.0_wp + e + weight))**2
       outcome%wave_loss = exp(-min(part*face%model, most)) - exp(-min(part*face%real_face, most))
    end subroutine predict
 

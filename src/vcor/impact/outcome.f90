@@ -116,6 +116,8 @@ module vcor_impact_outcome
       real(wp) :: mass_ratio = none
       !> Mean pressure at the time of the largest force [Pa]
       real(wp) :: mean_pressure = none
+      !> Largest tension around the axis of the contact divided by `mean_pressure` [-]
+      real(wp) :: axis_tension = none
       !> Predicted change of `cor_sphere` towards exact mechanics [-]
       real(wp) :: cor_deviation = none
       !> Share of `initial_energy` that the face as it is takes by waves, less what the model's

@@ -87,6 +87,8 @@ module vcor_impact_trajectory
       real(wp) :: accuracy = 0.0_wp
       !> Contact radius at the nodes [m], shape (0:); unallocated: that of the contact law
       real(wp), allocatable :: radius(:)
+      !> Largest tension around the axis of a contact [Pa], of the same solver
+      real(wp) :: tension = 0.0_wp
       !> Number of contacts with a structure, the end of the first one [s], and whether another one
       !> follows the separation, or may
       integer :: contacts = 1

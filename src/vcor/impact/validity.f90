@@ -16,9 +16,13 @@ module vcor_impact_validity
    private
 
    public :: surroundings_t, assess, judge
+   public :: forgotten_base
    public :: threshold_t, thresholds, judged, level_of
    public :: levels, level_none, level_good, level_caution, level_outside
 
+   !> Cause of an impact without a result if `is_lighter`
+   character(len=*), parameter :: forgotten_base = 'the plate is free on both sides and lighter ' &
+      //'than the ball; on a floor give plate.base'
    !> Levels of validity: the impact has no result
    integer, parameter :: level_none = 0
    !> No measure exceeds a threshold: cor_sphere within 2 % or 0.01 of exact mechanics
@@ -68,6 +72,8 @@ module vcor_impact_validity
       ! over the yield strength: first yield, and full plasticity of the contact, Johnson, Contact
       ! Mechanics (1985), doi:10.1017/CBO9781139171731, sections 6.1 and 6.2
       threshold_t('mean_pressure', 1.07_wp, 2.8_wp), &
+      ! the part of the force that a contact without adhesion cannot have, if all of it pulled
+      threshold_t('axis_tension', 0.02_wp, 0.1_wp), &
       ! over the larger of cor_sphere and 0.5: caution above 2 % of cor_sphere or 0.01, the larger,
       ! outside above 10 % or 0.05; what it says is measured by benchmarks/verdicts.py
       threshold_t('cor_deviation', 0.02_wp, 0.1_wp), &
@@ -162,6 +168,8 @@ contains
       end if
       outcome%weight_ratio = impact%mass*around%gravity/outcome%max_force
       outcome%mean_pressure = outcome%max_force/(pi*force_radius**2)
+      if (allocated(trajectory%radius)) outcome%axis_tension = &
+         trajectory%tension/outcome%mean_pressure
       modulus = impact%modulus%dynamic_modulus(frequency)
       outcome%peak_loss_tangent = aimag(modulus)/real(modulus, wp)
       outcome%peak_storage_modulus = real(modulus, wp)
@@ -322,6 +330,7 @@ contains
          merge(real(outcome%contacts, wp), none, outcome%contacts > 1), &
          outcome%weight_ratio, outcome%mass_ratio, &
          outcome%mean_pressure/around%yield_strength, &
+         outcome%axis_tension, &
          abs(outcome%cor_deviation)/max(outcome%cor_sphere, 0.5_wp), &
          merge(huge(gain), none, outcome%gains_energy())]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none

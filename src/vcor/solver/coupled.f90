@@ -545,6 +545,7 @@ contains
             limit(a%z(0:n), b%z(0:2*n:2)), limit(a%velocity(0:n), b%velocity(0:2*n:2)), &
             b%radius(0:2*n:2))
          trajectory%steps = a%steps + b%steps
+         trajectory%tension = b%tension
          trajectory%radius(n + 1) = 0.0_wp
          ! the end, with the impulse of the whole contact
          n = n + 1

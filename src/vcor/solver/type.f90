@@ -188,7 +188,7 @@ contains
       type(impact_t), intent(in) :: impact
       !> In words, with lambda by the storage moduli at pi/(elastic contact time); blank if the
       !> plate is not light. Of fixed length, see `as_text`
-      character(len=280) :: text
+      character(len=320) :: text
 
       real(wp), parameter :: light = 3.0_wp, share = 0.68_wp
       real(wp) :: lambda
@@ -199,7 +199,7 @@ contains
       text = 'the plate is too light: with an inelasticity lambda of '//as_text(lambda) &
          //' by the storage modulus it absorbs the impact, and about 0.68/lambda^5 = ' &
          //as_text(share/lambda**5)//' of the velocity remains; take a larger ' &
-         //'plate.half_thickness or a lighter sphere'
+         //'plate.half_thickness or a lighter sphere, or give plate.base if it lies on a floor'
    end function light_plate
 
    !> A number as text of fixed length: gfortran 12 keeps the length of a deferred-length function

@@ -30,6 +30,7 @@ module vcor_sweep_points
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
+   use vcor_impact_validity, only : forgotten_base
    use vcor_kinds, only : wp
    use vcor_number, only : contains_number, interval_t
    use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, rank_count, this_rank
@@ -438,9 +439,8 @@ contains
       case (contact_lasting)
          kind%message = 'the bodies do not separate within solver.end_time'
          associate (problem => sweep%problem)
-            if (problem%surroundings%is_lighter(problem%impact)) kind%message = 'the bodies do ' &
-               //'not separate: the plate is free on both sides and lighter than the ball; on a ' &
-               //'floor give plate.base'
+            if (problem%surroundings%is_lighter(problem%impact)) kind%message = &
+               'the bodies do not separate: '//forgotten_base
          end associate
       case (contact_sticking)
          kind%message = 'the sphere sticks: all motion decays in contact'

@@ -206,6 +206,8 @@ contains
          outcome%mass_ratio)
       call list%add('mean_pressure', 'p_m', 'Pa', 'mean pressure at the largest force', &
          outcome%mean_pressure)
+      call list%add('axis_tension', '-p_0/p_m', '1', &
+         'largest tension on the axis / mean_pressure', outcome%axis_tension)
       call list%add('cor_deviation', 'D_e', '1', &
          'predicted change of cor_sphere by exact mechanics', outcome%cor_deviation)
       call list%add('wave_loss', 'W_1/KE_0', '1', &

@@ -2,6 +2,7 @@
 module vcor_verify_models
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
+   use vcor_case_catalogue, only : find_group
    use vcor_case_cause, only : explain
    use vcor_case_inputs, only : inputs_t, of_plate, of_target, shape_punch, target_block, &
       target_none, target_plate, target_rod
@@ -19,7 +20,7 @@ module vcor_verify_models
    implicit none
    private
 
-   public :: model_t, solve_models, solve_model, differ
+   public :: model_t, solve_models, solve_exact, has_exact_contact, differ
 
    !> The case with one plate model, one contact law and one pair
    type :: model_t
@@ -248,6 +249,57 @@ contains
          model%outcome = outcome_t()
       end if
    end subroutine solve_model
+
+   !> Whether law and pair of a structure change nothing: they are exact, or the contact is elastic
+   function has_exact_contact(case) result(yes)
+      type(case_t), intent(in) :: case
+      logical :: yes
+
+      character(len=*), parameter :: bodies(2) = ['sphere', 'plate ']
+      character(len=:), allocatable :: law, pair
+      logical :: is_elastic(2)
+      integer :: i
+
+      call case%get('contact', 'law', law)
+      call case%get('contact', 'pair', pair)
+      do i = 1, size(bodies)
+         is_elastic(i) = any(case%model(find_group('material'), &
+            case%material_of(trim(bodies(i)))) == [character(len=7) :: 'rigid', 'elastic'])
+      end do
+      yes = all(is_elastic) .or. law == 'receding' .and. (pair == 'series' .or. any(is_elastic))
+   end function has_exact_contact
+
+   !> Solve the impact of a case with the exact mechanics; with a structure only the contact is
+   subroutine solve_exact(case, outcome, exact, is_shown)
+      type(case_t), intent(in) :: case
+      type(outcome_t), intent(in) :: outcome
+      !> Outcome with the exact mechanics
+      type(model_t), intent(out) :: exact
+      !> Whether it differs from the given outcome, or does not exist
+      logical, intent(out) :: is_shown
+
+      character(len=:), allocatable :: waves
+      logical :: is_valid
+
+      call case%get('plate', 'waves', waves)
+      is_shown = .false.
+      if (waves == 'body' .and. outcome%is_coupled()) return
+      exact = model_t(waves, 'receding', 'series')
+      if (case%count('target') > 0) then
+         exact%outcome = outcome
+         if (has_exact_contact(case)) return
+      else if (.not. case%has_second_sphere()) then
+         exact%waves = 'body'
+      end if
+      call solve_model(case, exact, is_valid)
+      if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
+         ! a half space without density has no waves
+         exact = model_t(waves, 'receding', 'series')
+         call solve_model(case, exact, is_valid)
+      end if
+      is_shown = allocated(exact%failure)
+      if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
+   end subroutine solve_exact
 
    !> Remove from an error the keys that the combination replaces: the case has other values
    pure subroutine forget_choices(error)

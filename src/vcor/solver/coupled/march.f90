@@ -10,7 +10,7 @@
 module vcor_solver_coupled_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : pi, wp
    use vcor_numeric_lapack, only : dgesv, dgetrs
    use vcor_solver_convolution, only : dot
    use vcor_solver_coupled_kernel, only : kernel_t
@@ -53,6 +53,8 @@ module vcor_solver_coupled_march
       real(wp) :: time_error = 0.0_wp
       !> Impulse of the contact [N s]
       real(wp) :: impulse = 0.0_wp
+      !> Largest tension around the axis [Pa], 0 if there is none
+      real(wp) :: tension = 0.0_wp
    contains
       procedure :: rests
       procedure :: cor
@@ -93,7 +95,7 @@ contains
       integer, parameter :: needed = 2
       type(balance_t) :: balance
       real(wp), allocatable :: profile(:), pressure(:, :), hats(:)
-      real(wp) :: lost(0:2), path(0:2), per_mass, bend(kernel%mesh%hats)
+      real(wp) :: lost(0:2), path(0:2), per_mass, pull, bend(kernel%mesh%hats)
       real(wp) :: axis(0:kernel%mesh%steps)
       logical :: is_bounded
       integer :: i, k, n, free
@@ -151,6 +153,8 @@ contains
             course%velocity(k) = impact%free_velocity(real(k, wp)*course%dt) - lost(0)
             course%z(k) = impact%free_path(real(k, wp)*course%dt) - path(0)
             course%radius(k) = balance%radius
+            pull = -axis_pressure(balance, row%x, pressure(:, k))
+            if (pull > course%tension) course%tension = pull
             if (is_bounded .and. balance%pushes(row%springs)) then
                course%status = course_outgrows
                return
@@ -328,8 +332,9 @@ contains
          end do
          return
       end if
-      call raise(error, error_numerical, 'the springs that push in a step of the contact cannot ' &
-         //'be found')
+      call raise(error, error_numerical, 'no pressure balances a step of the contact: the plate ' &
+         //'gives way within the step by more than the contact can resolve; take a thicker ' &
+         //'plate, a lighter body or a slower impact')
    end subroutine find_pushing
 
    !> Let a spring push, or not
@@ -398,6 +403,49 @@ contains
             - (u(2) - u(1))*(profile(1)/(profile(2) - profile(1)))
       end associate
    end function axis_compression
+
+   !> Mean pressure around the axis, over a quarter of the contact's radius b: with P = -(1/pi)
+   !> int_r^a q'(x) (x^2 - r^2)^(-1/2) dx, and q linear in x^2 between the springs
+   !>
+   !>     -(2/(pi b^2)) sum dq/d(x^2) [G], G = 2/3 (x^3 - (x^2 - b^2)^(3/2) if x > b)
+   !>
+   !> The springs only push, but P is negative where q rises with x
+   pure function axis_pressure(self, x, q) result(mean)
+      type(balance_t), intent(in) :: self
+      !> Places of the springs [m], and the transform of the pressure there [N/m], shape (springs)
+      real(wp), intent(in) :: x(:), q(:)
+      !> Pressure [Pa]; 0 for a contact of few springs
+      real(wp) :: mean
+
+      ! springs up to the edge of a contact that resolves the quarter
+      integer, parameter :: resolved = 16
+      real(wp) :: b, before, here
+      integer :: i, last
+
+      mean = 0.0_wp
+      last = findloc(self%pushes, .true., dim=1, back=.true.)
+      if (last < resolved) return
+      b = 0.25_wp*self%radius
+      ! the slope of the first two springs holds up to the axis
+      before = 0.0_wp
+      do i = 1, last - 1
+         here = weight_of(x(i + 1), b)
+         mean = mean + (q(i) - q(i + 1))/(x(i + 1)**2 - x(i)**2)*(here - before)
+         before = here
+      end do
+      ! q falls to 0 from the last spring to the edge, of a punch at once
+      mean = mean + q(last)*x(last)*(1.0_wp - sqrt(1.0_wp - (b/x(last))**2))
+      mean = mean*2.0_wp/(pi*b**2)
+   end function axis_pressure
+
+   !> The function G of `axis_pressure`
+   elemental function weight_of(x, b) result(weight)
+      !> Place, and radius of the disc [m]
+      real(wp), intent(in) :: x, b
+      real(wp) :: weight
+
+      weight = 2.0_wp/3.0_wp*(x**3 - max(x**2 - b**2, 0.0_wp)*sqrt(max(x**2 - b**2, 0.0_wp)))
+   end function weight_of
 
    !> Steps from the root of a falling series to its end, by inverse interpolation, or one step
    pure function before_end(value) result(steps)
