@@ -96,7 +96,8 @@ contains
             if (outcome%status == contact_separated) then
                call solve_exact(job%case, outcome, exact, is_shown)
                if (is_shown) lines = as_line('mechanics: '//mechanics_of(job%case, reading) &
-                  //'; '//word_of(name_of_exact(job%case))//': '//mechanics_of(job%case, reading, exact))
+                  //'; '//word_of(name_of_exact(job%case))//': ' &
+                  //mechanics_of(job%case, reading, exact))
                if (allocated(exact%failure)) lines = lines &
                   //as_line('note: no result with '//name_of_exact(job%case)//': '//exact%failure)
                lines = lines//measures_report(outcome, worker%problem%surroundings)
@@ -157,8 +158,8 @@ contains
             //' contacts in '//short(outcome%last_separation)//' s')
       end if
       if (outcome%cor_sphere < 0.0_wp .and. outcome%has_structure()) then
-         call add('the sphere does not rebound (cor_sphere below zero): it follows the structure, ' &
-            //'which moves away faster')
+         call add('the sphere does not rebound (cor_sphere below zero): it follows the ' &
+            //'structure, which moves away faster')
       else if (outcome%cor_sphere < 0.0_wp) then
          call add('the sphere does not rebound (cor_sphere ' &
             //'below zero): the plate moves faster than it, and it will strike the plate again')

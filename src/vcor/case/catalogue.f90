@@ -95,7 +95,8 @@ module vcor_case_catalogue
       group_t("sphere", "The sphere, or another body that strikes", required=.true., &
          selector="shape"), &
       group_t("plate", "The plate", required=.true.), &
-      group_t("target", "What carries the struck surface, if it is of finite size", selector="body", optional=.true.), &
+      group_t("target", "What carries the struck surface, if it is of finite size", &
+         selector="body", optional=.true.), &
       group_t("contact", "Law of the contact force"), &
       group_t("material", "A material used by the sphere or the plate", required=.true., &
          repeated=.true., label="name", selector="model"), &

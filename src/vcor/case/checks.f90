@@ -354,9 +354,9 @@ contains
          return
       end if
       call self%get('plate', 'base', base)
-      if (base /= 'free') call self%refuse('target', 'material', 1, "key 'material' is missing in " &
-         //"&target of body '"//body//"', expected the name of a &material: that of &plate is of " &
-         //'the layer on its base', error)
+      if (base /= 'free') call self%refuse('target', 'material', 1, "key 'material' is missing " &
+         //"in &target of body '"//body//"', expected the name of a &material: that of &plate " &
+         //'is of the layer on its base', error)
    end subroutine check_target
 
    !> Check that the stem of file names is not a path

@@ -106,8 +106,8 @@ module vcor_case_choices
          //"plate with nothing behind it bends: plate.waves = 'body'. Columns layer_ratio, " &
          //'layer_stiffening.'), &
       topic_t(' structure edge beam bar rod anvil cantilever racket modal ', &
-         'A body of finite size that is struck: the group &target. Its waves come back, and it may ' &
-         //'strike the ball again: columns contacts, last_separation, structure_energy.'), &
+         'A body of finite size that is struck: the group &target. Its waves come back, and it ' &
+         //'may strike the ball again: columns contacts, last_separation, structure_energy.'), &
       topic_t(' ting ', &
          "Contact that recedes: contact.law = 'receding'. T. C. T. Ting, J. Appl. Mech. " &
          //'33 (1966) 845.'), &

@@ -122,7 +122,8 @@ contains
       call build_material(self%plate, self%built%material(of_plate), inputs%material(of_plate), &
          is_new(of_plate), error)
       if (allocated(error)) error%item = inputs%item(of_plate)
-      if (any(is_new(:of_plate)) .or. .not. inputs%is_one_contact(self%built)) self%has_contact = .false.
+      if (any(is_new(:of_plate)) .or. .not. inputs%is_one_contact(self%built)) &
+         self%has_contact = .false.
       if (allocated(error)) return
       if (.not. self%has_contact) call build_contact(self, inputs, error)
       if (allocated(error)) return

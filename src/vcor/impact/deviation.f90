@@ -164,8 +164,8 @@ contains
       !> Thickness H [m]; any for a half space
       real(wp), intent(in) :: thickness
       type(mobility_t), intent(inout) :: mobility
-      !> Whether the model is a thin plate by its modes: up to the first reflection it is an infinite
-      !> one that remembers
+      !> Whether the model is a thin plate by its modes: up to the first reflection it is an
+      !> infinite one that remembers
       logical, intent(in) :: has_modes
 
       complex(wp) :: s, rate, modulus, extra, thin

@@ -158,7 +158,8 @@ contains
          if (.not. allocated(error)) call solve_direct(comparison%attempts, settings, impact, error)
          if (allocated(error)) return
          if (method_of(case) == 'direct' .and. .not. comparison%first_contact &
-             .and. (comparison%two_methods .or. scheme /= 'product' .or. case%given('solver', 'time_step'))) then
+             .and. (comparison%two_methods .or. scheme /= 'product' &
+             .or. case%given('solver', 'time_step'))) then
             own%label = 'case: '//scheme
             if (case%given('solver', 'time_step')) &
                call case%get('solver', 'time_step', own%time_step)
