@@ -1,4 +1,4 @@
-"""Struck structures from Python: files of modes in copies and saved cases, sweeps, identification."""
+"""Struck structures from Python: files of modes in copies, sweeps, identification."""
 
 import math
 import pickle
