@@ -161,7 +161,7 @@ contains
       legend = 'half_space is body without a thickness'
       first = 'waves'
       if (models(1)%label /= '') then
-         legend = 'half_modes has half of the modes, infinite no ends'
+         legend = 'half_modes: half; infinite: no ends'
          first = 'structure'
       end if
       text = '  effect of the choice of model; * marks that of the case; '//legend//nl &
