@@ -19,7 +19,8 @@ PRONY, CERF, POWER = (
     "fractional model, Eq. (23-b)",
 )
 MODULI = ["relaxation modulus [MPa]", "loss tangent", "time [s]", "angular frequency [rad/s]"]
-OUTSIDE = "outside of the model's validity"
+# How the text of a hatched part begins, whose number is measured
+HATCHED = "with caution: "
 
 # What is written in each figure
 FIGURES = {
@@ -57,7 +58,7 @@ FIGURES = {
     "map": [COR, VELOCITY, "sphere radius [mm]", "0.6", "0.7", "0.8", "0.9"],
     "energy": ["energy radiated into the plate [J]", VELOCITY, "0.1", "0.01"],
     "fit": [*MODULI, "soft rubber data"],
-    "validity": [COR, "plate half thickness [mm]", "measured", OUTSIDE],
+    "validity": [COR, "plate half thickness [mm]", "measured"],
 }
 
 
@@ -94,7 +95,7 @@ def test_content(gallery, name):
     found = written(gallery / f"{name}.svg")
     for text in FIGURES[name]:
         assert text in found
-    assert (OUTSIDE in found) == (name == "validity")
+    assert any(text.startswith(HATCHED) for text in found) == (name == "validity")
 
 
 def numbers(path):
