@@ -13,7 +13,7 @@ module vcor_app_job
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_case_reader, only : add_materials, override, read_case
-   use vcor_io_data_file, only : data_file, read_data
+   use vcor_io_data_file, only : data_file, modes_file, read_data
    use vcor_io_path, only : same_file
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable
@@ -220,7 +220,7 @@ contains
       type(case_t), intent(in) :: case
       !> Name of a file
       character(len=*), intent(in) :: name
-      !> The case file or a file of its materials; empty if it is none of them
+      !> The case file, or a file of its materials or of its structure; empty if it is none of them
       character(len=:), allocatable :: path
 
       integer :: i
@@ -235,6 +235,8 @@ contains
          path = data_file(case, i, 'shift_file')
          if (same_file(name, path)) return
       end do
+      path = modes_file(case)
+      if (same_file(name, path)) return
       path = ''
    end function file_read
 

@@ -5,7 +5,7 @@ module vcor_app_run
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : report
    use vcor_app_validity, only : about_numbers, measures_remark, &
-      measures_report, mechanics_of, warn_of_data
+      measures_report, mechanics_of, name_of_exact, warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
@@ -96,9 +96,10 @@ contains
             if (outcome%status == contact_separated) then
                call solve_exact(job%case, outcome, exact, is_shown)
                if (is_shown) lines = as_line('mechanics: '//mechanics_of(job%case, reading) &
-                  //'; exact: '//mechanics_of(job%case, reading, exact))
+                  //'; '//word_of(name_of_exact(job%case))//': ' &
+                  //mechanics_of(job%case, reading, exact))
                if (allocated(exact%failure)) lines = lines &
-                  //as_line('note: no result with exact mechanics: '//exact%failure)
+                  //as_line('note: no result with '//name_of_exact(job%case)//': '//exact%failure)
                lines = lines//measures_report(outcome, worker%problem%surroundings)
             end if
          end associate
@@ -112,11 +113,19 @@ contains
             ! `auto` uses direct if ive fails
             if (method == 'ive' .and. course%stages == 0) method = 'direct'
             call write_stdout(report(job%case%source, title, method, outcome, &
-               exact%outcome, course%state(1, course%last), lines &
+               exact%outcome, name_of_exact(job%case), course%state(1, course%last), lines &
                //remarks_on(job, outcome)//files), trouble)
          end associate
       end subroutine write_screen
    end subroutine run_impact
+
+   !> First word of a text
+   pure function word_of(text) result(word)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: word
+
+      word = text(:index(text//' ', ' ') - 1)
+   end function word_of
 
    !> A line of the report
    pure function as_line(words) result(text)
@@ -143,8 +152,18 @@ contains
       if (outcome%is_coupled()) call add('contact and waves are solved as one: cor is ' &
          //'cor_sphere, and hysteresis_energy, wave_energy, deflection_ratio and inelasticity ' &
          //'are nan')
-      if (outcome%cor_sphere < 0.0_wp) call add('the sphere does not rebound (cor_sphere ' &
-         //'below zero): the plate moves faster than it, and it will strike the plate again')
+      if (outcome%contacts > 1) then
+         call add('the first separation, with cor_sphere '//short(outcome%first_cor_sphere) &
+            //', is not the end: the structure strikes again, '//integer_text(outcome%contacts) &
+            //' contacts in '//short(outcome%last_separation)//' s')
+      end if
+      if (outcome%cor_sphere < 0.0_wp .and. outcome%has_structure()) then
+         call add('the sphere does not rebound (cor_sphere below zero): it follows the ' &
+            //'structure, which moves away faster')
+      else if (outcome%cor_sphere < 0.0_wp) then
+         call add('the sphere does not rebound (cor_sphere ' &
+            //'below zero): the plate moves faster than it, and it will strike the plate again')
+      end if
       if (uncovered(job, outcome) /= '') call add(uncovered(job, outcome))
 
    contains

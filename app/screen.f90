@@ -20,30 +20,33 @@ module vcor_app_screen
    !> Name of a group of quantities, and the quantities
    type :: block_t
       character(len=24) :: title
-      character(len=20) :: names(7) = ''
+      character(len=20) :: names(9) = ''
    end type block_t
    !> The table of an impact, and of a sweep
    type(block_t), parameter :: blocks(*) = [ &
       block_t('restitution', [character(len=20) :: 'cor_sphere', 'cor', 'resilience', &
-      'rebound_height', '', '', '']), &
-      block_t('motion', [character(len=20) :: 'contact_time', 'max_indentation', &
+      'rebound_height', '', '', '', '', '']), &
+      block_t('motion', [character(len=20) :: 'contact_time', 'contacts', 'last_separation', &
+      'max_indentation', &
       'residual_indentation', 'residual_ratio', 'contact_radius', 'layer_ratio', &
       'layer_strain']), &
       block_t('force', [character(len=20) :: 'max_force', 'mean_pressure', 'layer_stiffening', &
-      '', '', '', '']), &
+      '', '', '', '', '', '']), &
       block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', &
-      'peak_storage_modulus', 'loss_tangent', 'min_frequency', 'inelasticity', '', ''])]
+      'peak_storage_modulus', 'loss_tangent', 'min_frequency', 'inelasticity', '', '', '', ''])]
 
 contains
 
    !> Report of one impact
-   function report(filename, title, method, outcome, exact, time, files) result(text)
+   function report(filename, title, method, outcome, exact, exact_name, time, files) result(text)
       character(len=*), intent(in) :: filename
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: method
       type(outcome_t), intent(in) :: outcome
       !> Outcome with exact mechanics; without numbers if it is not shown
       type(outcome_t), intent(in) :: exact
+      !> Name of this mechanics
+      character(len=*), intent(in) :: exact_name
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
       !> Notes and written files, one per line
@@ -58,10 +61,10 @@ contains
             //method//' in '//steps_of(method, outcome)//'), status ' &
             //trim(status_name(outcome%status))//nl
       else
-         text = text//answer(outcome, exact)//nl
+         text = text//answer(outcome, exact, exact_name)//nl
          do i = 1, size(blocks)
             if (blocks(i)%title == 'what decides the loss') text = text//budget(outcome)//nl
-            text = text//block_text(blocks(i), outcome, exact)//nl
+            text = text//block_text(blocks(i), outcome, exact, exact_name)//nl
          end do
          text = text//'  method '//method//' in '//steps_of(method, outcome)//nl
       end if
@@ -80,8 +83,10 @@ contains
 
    !> The answer: the coefficient of restitution that an experiment reads, and in a line of its own
    !> whether the model holds, and the exact value if that differs. Each has at most 80 columns
-   function answer(outcome, exact) result(text)
+   function answer(outcome, exact, exact_name) result(text)
       type(outcome_t), intent(in) :: outcome, exact
+      !> Name of the exact mechanics
+      character(len=*), intent(in) :: exact_name
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: second
@@ -92,16 +97,18 @@ contains
       second = ''
       if (outcome%validity == level_outside) second = '; outside the validity of the model'
       if (outcome%validity == level_caution) second = '; with caution'
-      if (.not. ieee_is_nan(exact%cor_sphere)) second = second//'; with exact mechanics ' &
-         //significant(exact%cor_sphere, digits_of(exact, exact%cor_sphere, &
+      if (.not. ieee_is_nan(exact%cor_sphere)) second = second//'; with '//exact_name &
+         //' '//significant(exact%cor_sphere, digits_of(exact, exact%cor_sphere, &
          exact%cor_sphere_error), 0)
       if (second /= '') text = text//'  '//second(3:)//nl
    end function answer
 
    !> Lines of a group of quantities
-   function block_text(group, outcome, exact) result(text)
+   function block_text(group, outcome, exact, exact_name) result(text)
       type(block_t), intent(in) :: group
       type(outcome_t), intent(in) :: outcome, exact
+      !> Name of the exact mechanics
+      character(len=*), intent(in) :: exact_name
       character(len=:), allocatable :: text
 
       type(quantity_t), allocatable :: columns(:)
@@ -113,7 +120,15 @@ contains
          associate (name => group%names(k))
             if (name == '') exit
             if (ieee_is_nan(quantity_value(outcome, name))) cycle
+            ! a plate without edges is struck once
+            if (name == 'contacts' .and. .not. outcome%has_structure()) cycle
+            if (name == 'last_separation' .and. outcome%contacts <= 1) cycle
             associate (quantity => columns(quantity_place(name)))
+               if (quantity%is_whole) then
+                  text = text//padded('    '//quantity%meaning, 50)//padded(quantity%symbol, 8) &
+                     //right(integer_text(nint(quantity_value(outcome, name))), 16)//nl
+                  cycle
+               end if
                text = text//line('    '//quantity%meaning, 50, quantity%symbol, &
                   shown_value(), merge('        ', quantity%unit, quantity%unit == '1'), &
                   remark(outcome, name), digits_of(outcome, quantity_value(outcome, name), &
@@ -121,7 +136,7 @@ contains
                if (all(name /= [character(len=10) :: 'cor', 'cor_sphere'])) cycle
                if (name == 'cor' .and. exact%is_coupled()) cycle
                if (ieee_is_nan(exact%cor)) cycle
-               text = text//line('      with exact mechanics', 50, quantity%symbol, &
+               text = text//line('      with '//exact_name, 50, quantity%symbol, &
                   quantity_value(exact, name), '', remark(exact, name), &
                   digits_of(exact, quantity_value(exact, name), error_of(exact, name)))
             end associate
@@ -296,9 +311,14 @@ contains
          text = text//line('    lost in the contact (hysteresis)', 50, 'W_h', &
             visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
             share(outcome%hysteresis_energy), d) &
-            //line('    radiated into the plate', 50, 'W_wave', &
+            //line('    '//trim(merge('given to the structure ', 'radiated into the plate', &
+            outcome%has_structure())), 50, 'W_wave', &
             visible(outcome%wave_energy, outcome%initial_energy), 'J', &
             share(outcome%wave_energy)//doubt, d)
+         if (outcome%has_structure() .and. .not. ieee_is_nan(outcome%structure_energy)) &
+            text = text//line('      left in it at the last separation', 50, 'W_s', &
+            visible(outcome%structure_energy, outcome%initial_energy), 'J', &
+            share(outcome%structure_energy), d)
       end if
       text = text//line('    left to the sphere', 50, 'KE_1', outcome%final_energy, 'J', &
          share(outcome%final_energy), d) &

@@ -20,7 +20,7 @@ module vcor_app_sweep
    use vcor_words, only : joined
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : place_in_table, table_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : unset, wp
    use vcor_sweep_mpi, only : differs, largest_of_ranks, share_error, this_rank
    use vcor_sweep_points, only : clock, default_threads, failures_t, monitor_t, solve_points
    use vcor_sweep_quantity, only : new_summary, point_pending, quantities, quantity_names, &
@@ -231,16 +231,22 @@ contains
 
       character(len=:), allocatable :: line, lines
       type(quantity_t), allocatable :: columns(:)
+      logical :: strikes_again
       integer :: first, last, i, j, k
 
       allocate (columns, source=quantities())
+      strikes_again = maxval(summary%columns(place_in_table(summary, 'contacts') &
+         - size(summary%dimensions))%integers) > 1
       text = padded('', 58)//'        smallest         at         largest         at'//nl
       if (size(grid%axes) > 1) text = padded('', 58) &
          //'        smallest   at point         largest   at point'//nl
+      line = ''
       do i = 1, size(blocks)
          lines = ''
          do j = 1, size(blocks(i)%names)
             if (blocks(i)%names(j) == '') exit
+            if (any(blocks(i)%names(j) == [character(len=15) :: 'contacts', 'last_separation']) &
+                .and. .not. strikes_again) cycle
             associate (quantity => columns(quantity_place(blocks(i)%names(j))), &
                        values => numbers_of(summary, blocks(i)%names(j)))
                first = 0
@@ -311,8 +317,16 @@ contains
       character(len=*), intent(in) :: name
       real(wp), allocatable :: values(:)
 
-      values = summary%columns(place_in_table(summary, trim(name)) &
-         - size(summary%dimensions))%reals
+      associate (column => summary%columns(place_in_table(summary, trim(name)) &
+                 - size(summary%dimensions)))
+         if (allocated(column%integers)) then
+            values = real(column%integers, wp)
+            ! 0 counts nothing: the point has no result
+            where (column%integers == 0) values = unset
+         else
+            values = column%reals
+         end if
+      end associate
    end function numbers_of
 
    !> Digits that tell two numbers apart

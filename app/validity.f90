@@ -19,11 +19,11 @@ module vcor_app_validity
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_number, only : real_text
    use vcor_text, only : integer_text, printable
-   use vcor_verify_models, only : model_t, solve_exact
+   use vcor_verify_models, only : has_exact_contact, model_t, solve_exact
    implicit none
    private
 
-   public :: mechanics_of, measures_report, measures_remark, points_report, &
+   public :: mechanics_of, name_of_exact, measures_report, measures_remark, points_report, &
       points_remark, exact_points, about_numbers, warn_of_input, warn_of_data
 
    !> End of a line
@@ -33,7 +33,7 @@ module vcor_app_validity
       'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
       'energy_loss', 'energy_imbalance', 'contact_ratio', 'needed_extent', &
       'deflection_ratio', 'weight_ratio', 'mean_pressure', 'cor_deviation', 'layer_strain', &
-      'mass_ratio', 'axis_tension']
+      'mass_ratio', 'axis_tension', 'highest_mode', 'contacts']
 
 contains
 
@@ -60,10 +60,16 @@ contains
          //'alone, '//short(sweep%problem%impact%mass)//' kg, as if the second one could not ' &
          //'move; two free spheres need their reduced mass, m1 m2/(m1 + m2)'
       call case%get('contact', 'mechanics', mechanics)
-      if (mechanics == 'exact' .and. case%has_second_sphere() &
-          .and. .not. case%given('plate', 'waves')) &
+      if (mechanics == 'exact' .and. case%count('target') > 0 &
+          .and. .not. case%given('plate', 'waves')) then
          write (error_unit, '(a)') 'vcor: note: '//case%location('contact', 'mechanics') &
-         //": two spheres are no half space: mechanics = 'exact' leaves plate.waves = 'none'"
+            //": the surface moves with the structure: mechanics = 'exact' leaves plate.waves " &
+            //"= 'none'"
+      else if (mechanics == 'exact' .and. case%has_second_sphere() &
+               .and. .not. case%given('plate', 'waves')) then
+         write (error_unit, '(a)') 'vcor: note: '//case%location('contact', 'mechanics') &
+            //": two spheres are no half space: mechanics = 'exact' leaves plate.waves = 'none'"
+      end if
       if (case%given('impact', 'temperature') .or. any(swept_addresses(case) &
          == case%address('impact', 'temperature'))) return
       do i = 1, case%count('material')
@@ -96,6 +102,11 @@ contains
          if (.not. reading%has(case%address(trim(groups(i)), trim(keys(i))))) cycle
          call case%get(trim(groups(i)), trim(keys(i)), word)
          if (word == 'free') cycle
+         ! the surface moves with the structure
+         if (keys(i) == 'waves' .and. case%count('target') > 0) then
+            text = text//', '//structure_text(case)
+            cycle
+         end if
          if (present(exact) .and. keys(i) /= 'base') then
             word = trim(exact%law)
             if (i == 1) word = trim(exact%waves)
@@ -105,11 +116,40 @@ contains
       end do
       text = text(3:)
       ! a base that is forgotten
-      if (present(exact) .or. .not. reading%has(case%address('plate', 'base'))) return
+      if (present(exact) .or. .not. reading%has(case%address('plate', 'base')) &
+          .or. case%count('target') > 0) return
       call case%get('plate', 'base', word)
       if (word == 'free' .and. (case%given('plate', 'thickness') &
          .or. case%given('plate', 'half_thickness'))) text = text//', free on both sides'
    end function mechanics_of
+
+   !> The structure of a case in words
+   function structure_text(case) result(text)
+      type(case_t), intent(in) :: case
+      !> Such as `target beam cantilever`
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: word
+
+      call case%get('target', 'body', word)
+      text = 'target '//word
+      call case%get('target', 'support', word)
+      if (word /= '') text = text//' '//word
+   end function structure_text
+
+   !> Name of what `solve_exact` solves: with a plate or a beam only the contact is exact
+   function name_of_exact(case) result(name)
+      type(case_t), intent(in) :: case
+      !> `exact mechanics` or `receding contact`
+      character(len=:), allocatable :: name
+
+      character(len=:), allocatable :: body
+
+      name = 'exact mechanics'
+      if (case%count('target') == 0) return
+      call case%get('target', 'body', body)
+      if (body == 'plate' .or. body == 'beam') name = 'receding contact'
+   end function name_of_exact
 
    !> The level of an impact, a line for each measure that is not good, and one line for the good
    !> ones
@@ -172,6 +212,13 @@ contains
             case ('weight_ratio')
                words = 'the weight is '//percent(value) &
                   //' of the largest force, and left out: give impact.gravity, 0 on a pendulum'
+            case ('highest_mode')
+               words = 'the modes end '//trim(merge('below     ', 'just above', &
+                  outcome%highest_mode < 1.0_wp))//' the frequency of the contact, pi/t0: give ' &
+                  //'more of them, or target.residual_compliance'
+            case ('contacts')
+               words = 'the structure strikes the sphere again: damping and phase decide; a ' &
+                  //'velocity that differs by a per cent may give another number'
             case ('mean_pressure')
                words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
                   //'too high; take a slower impact'
@@ -187,6 +234,9 @@ contains
                words = 'exact mechanics is predicted to give cor_sphere ' &
                   //brief(max(outcome%cor_sphere + outcome%cor_deviation, 0.0_wp)) &
                   //"; compare mechanics = 'exact'"
+               if (surroundings%is_panel) words = 'without thin-plate theory cor_sphere is ' &
+                  //'predicted to be '//brief(max(outcome%cor_sphere + outcome%cor_deviation, &
+                  0.0_wp))
             end select
          end associate
       end function sentence
@@ -321,6 +371,8 @@ contains
       outcome%layer_strain = summary%values(places(15))%reals(point)
       outcome%mass_ratio = summary%values(places(16))%reals(point)
       outcome%axis_tension = summary%values(places(17))%reals(point)
+      outcome%highest_mode = summary%values(places(18))%reals(point)
+      outcome%contacts = summary%values(places(19))%integers(point)
    end function outcome_at
 
    !> Restitution of the sphere with exact mechanics at the first and the last point with a result,
@@ -352,6 +404,7 @@ contains
       allocate (known(size(summary%status)))
       known = summary%status == contact_separated
       if (.not. any(known)) return
+      if (case%count('target') > 0 .and. has_exact_contact(case)) return
       farthest = 0
       largest = 0.0_wp
       associate (cor => summary%values(quantity_place('cor_sphere'))%reals, &
@@ -387,7 +440,7 @@ contains
          if (farthest > 0) text = text//'    largest difference found '//brief(largest) &
             //', predicted '//brief(deviation(farthest))//', '//coordinates(grid, farthest)//nl
       end associate
-      if (differs) text = '  cor_sphere with exact mechanics'//nl//text
+      if (differs) text = '  cor_sphere with '//name_of_exact(case)//nl//text
       if (.not. differs) text = ''
    end function exact_points
 

@@ -108,6 +108,8 @@ contains
       character(len=:), allocatable :: text
 
       text = heading(filename, title)//attempts_text(comparison)
+      if (comparison%first_contact) text = text//'  note: these are solutions of the first ' &
+         //'contact with the structure'//nl
       if (.not. comparison%two_methods) text = text//'  note: method ive has no result for ' &
          //'this case that is accurate enough, so only direct is shown'//nl
       if (comparison%separated) then
@@ -153,19 +155,25 @@ contains
       type(model_t), intent(in) :: models(:)
       character(len=:), allocatable :: text
 
+      character(len=:), allocatable :: legend, first
       integer :: i
 
-      text = '  effect of the choice of model; * marks that of the case; half_space is body ' &
-         //'without a thickness'//nl &
-         //'  '//padded('waves', 10)//'  '//padded('law', 9)//right('cor', 16) &
+      legend = 'half_space is body without a thickness'
+      first = 'waves'
+      if (models(1)%label /= '') then
+         legend = 'half_modes: half; infinite: no ends'
+         first = 'structure'
+      end if
+      text = '  effect of the choice of model; * marks that of the case; '//legend//nl &
+         //'  '//padded(first, 10)//'  '//padded('law', 9)//right('cor', 16) &
          //right('cor_sphere', 16)//right('contact_time [s]', 18) &
          //right('residual_indentation [m]', 26)//nl
       do i = 1, size(models)
          associate (this => models(i))
             if (this%pair /= models(max(1, i - 1))%pair .and. this%waves /= 'body') &
                text = text//"  the same with pair = '"//trim(this%pair)//"'"//nl
-            text = text//merge('* ', '  ', this%given)//merge('half_space', this%waves, &
-               this%is_half_space)//'  '//this%law
+            text = text//merge('* ', '  ', this%given)//merge('half_space', merge(this%label, &
+               this%waves, this%label /= ''), this%is_half_space)//'  '//this%law
             if (allocated(this%failure)) then
                text = text//right('refused', 16)//nl
             else if (this%outcome%status /= contact_separated) then

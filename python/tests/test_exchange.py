@@ -620,3 +620,15 @@ def test_lammps_does_what_a_mixture_says(lammps, cases, tmp_path):
             assert engine.extract_variable("leaving") / v == pytest.approx(float(e), abs=1e-3)
             assert engine.extract_variable("time") == pytest.approx(float(time), rel=0.01)
             engine.close()
+
+
+def test_no_structure_behind_a_pair():
+    """A law of two bodies has no structure: export and mixtures refuse one by name."""
+    block = {"body": "block", "mass": 0.1}
+    case = vcor.Case({"impact": {"velocity": 1.0}, "sphere": {"radius": 0.005, "material": "steel"},
+                      "plate": {"material": "steel"}, "target": block,
+                      "material": [STEEL]})  # fmt: skip
+    with pytest.raises(vcor.InputError, match="&target"):
+        vcor.export(case, "table", [0.5, 1.0, 2.0])
+    with pytest.raises(vcor.InputError, match="target"):
+        vcor.mixture([(STEEL, 0.005)], [STEEL], target=block)

@@ -31,6 +31,9 @@ NAMES = [
     "energy_loss",
     "initial_energy",
     "energy_imbalance",
+    "contacts",
+    "last_separation",
+    "structure_energy",
     "min_frequency",
     "inelasticity",
     "loss_tangent",
@@ -49,6 +52,7 @@ NAMES = [
     "plate_wave_number",
     "needed_extent",
     "deflection_ratio",
+    "highest_mode",
     "weight_ratio",
     "mass_ratio",
     "mean_pressure",
@@ -64,8 +68,8 @@ NAMES = [
 ]
 ALL = ",".join(NAMES)
 # Those that are whole numbers in the file of a part, and those of them that are texts elsewhere
-WHOLE = {"steps", "status", "validity", "validity_cause"}
-TEXTS = WHOLE - {"steps"}
+WHOLE = {"contacts", "steps", "status", "validity", "validity_cause"}
+TEXTS = WHOLE - {"contacts", "steps"}
 
 # What is said on stderr of the validity of bare numbers
 VALIDITY = re.compile(r"^vcor: note: .*: validity.*\n", re.MULTILINE)

@@ -32,6 +32,7 @@ FEATURES = {
     "gravity": (", gravity = 9.81", STILL, "", "", STEEL + RUBBER),
     "volterra_order = 2": ("", STILL, "", "volterra_order = 2, volterra_coefficient = 0.1", STEEL + RUBBER),
     "continue_after_separation": ("", STILL, "", "continue_after_separation = .true.", STEEL + RUBBER),
+    "&target": ("", STILL, "", "", STEEL + RUBBER + "&target body = 'block', mass = 0.1 /\n"),
 }
 KEYS = {"gravity": ("impact", "9.81"), "time_step": ("solver", "1e-5"), "volterra_coefficient": ("solver", "0.1"),
         "form": ("solver", "a"), "quadrature": ("solver", "rectangle"), "volterra_order": ("solver", "1"),
@@ -85,14 +86,18 @@ def test_what_a_method_reads(table, vcor, key, method):
 
 def test_features_that_exclude_each_other(table, vcor):
     """Each of the pairs, by a method that solves both alone."""
-    assert len(table["exclusions"]) == 4
+    assert len(table["exclusions"]) == 8
     for pair in table["exclusions"]:
         one, other = case_of(pair["one"]), case_of(pair["other"])
         both = other.replace("&contact  /", "&contact law = 'receding' /") if "law" in pair["one"] else other
         if pair["one"] == "viscosity":
             both = other.replace(RUBBER, DASHPOT)
+        if pair["other"] == "&target":
+            both = one + "&target body = 'block', mass = 0.1 /\n"
         assert both != one and both != other
         vcor.write(both)
-        done = vcor("check", "case.nml", "--set", "solver.method=direct")
+        # what direct does not solve alone is refused for that
+        method = "auto" if "body" in pair["one"] else "direct"
+        done = vcor("check", "case.nml", "--set", f"solver.method={method}")
         assert done.code == INPUT, pair
         assert pair["reason"] in done.err

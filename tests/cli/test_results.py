@@ -159,7 +159,7 @@ def test_no_separation(vcor, method):
     assert "no_separation" in done.out
     row = last_row(vcor.folder, "case_summary.csv")
     assert row.pop("status") == "no_separation"
-    assert int(row.pop("steps")) > 0
+    assert int(row.pop("steps")) > 0 and row.pop("contacts") == "0"
     assert float(row.pop("initial_energy")) > 1.6
     assert row.pop("validity") == row.pop("validity_cause") == "none"
     assert set(row.values()) == {"nan"}

@@ -39,6 +39,11 @@ CASES = {
     "cerf": BODIES.format("'steel'", f"'sheet'{PLATE} /") + STEEL + "&material name = 'sheet',\n"
     "   model = 'cerf', density = 1100, poisson_ratio = 0.4, equilibrium_modulus = 4e5,\n"
     "   relaxing_modulus = 6e8, beta = 700 /\n",
+    "block": BODIES.format("'steel'", "'sheet' /") + SOLID + STEEL
+    + "&target body = 'block', mass = 0.3, stiffness = 1e6, damping = 20 /\n",
+    "panel": BODIES.format("'steel'", f"'glass'{PLATE} /") + ELASTIC.replace("7e10", "5e8") + STEEL
+    + "&target body = 'plate', support = 'supported', length = 0.3, width = 0.2, thickness = 0.03,\n"
+    "   damping_ratio = 0.01, position = 0.14, 0.1 /\n",
 }
 
 # Values, two for a sweep, that must change an impact that reads them; others are multiples
@@ -61,7 +66,7 @@ VALUES = {
     "valid_from": ("1e-3", "2e-3"),
     "valid_to": ("1e-6", "2e-6"),
 }
-LISTS = {"moduli": "7e6", "times": "1e-4", "rates": "3e3"}
+LISTS = {"moduli": "7e6", "times": "1e-4", "rates": "3e3", "position": "0.13,0.1"}
 
 
 def numbers_of_the_catalogue():
@@ -82,12 +87,14 @@ KEYS = [key for key in numbers_of_the_catalogue() if key[0] != "sweep"]
 
 def test_the_catalogue_is_read():
     assert len(KEYS) > 25
-    assert {group for group, *_ in KEYS} == {"impact", "sphere", "plate", "material", "solver"}
+    assert {group for group, *_ in KEYS} == {"impact", "sphere", "plate", "target", "material", "solver"}
 
 
 def addresses(text, group, key, models):
     """Where a case may have the key: in a material of such a model, by its name; all have spheres."""
     if group == "sphere" and models and "sphere" not in models:
+        return []
+    if group == "target" and models and re.search(r"body = '(\w+)'", text + "body = 'none'")[1] not in models:
         return []
     if group != "material":
         return [f"{group}.{key}"]

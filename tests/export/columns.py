@@ -13,6 +13,9 @@ SUMMARY = {
     "energy_loss": "J",
     "initial_energy": "J",
     "energy_imbalance": None,
+    "contacts": "1",
+    "last_separation": "s",
+    "structure_energy": "J",
     "min_frequency": "rad/s",
     "inelasticity": "1",
     "loss_tangent": "1",
@@ -31,6 +34,7 @@ SUMMARY = {
     "plate_wave_number": "1",
     "needed_extent": "m",
     "deflection_ratio": "1",
+    "highest_mode": "1",
     "weight_ratio": "1",
     "mass_ratio": "1",
     "mean_pressure": "Pa",
@@ -58,5 +62,5 @@ HISTORY = {
     "contact_radius": "m",
 }
 
-INTEGERS = {"steps"}
+INTEGERS = {"contacts", "steps"}
 TEXTS = {"status", "validity", "validity_cause"}

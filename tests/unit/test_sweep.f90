@@ -12,7 +12,7 @@ program test_sweep
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
-      status_name, summary_t, values_of
+      quantity_place, status_name, summary_t, values_of
    use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, &
       solve_points, sweep_t, worker_t
    use vcor_test_watch, only : watch_t
@@ -255,8 +255,9 @@ contains
       real(wp), allocatable :: values(:)
 
       values = values_of(outcome)
-      ! validity and its cause are texts, the steps are counted in any case
+      ! validity and its cause are texts, contacts and steps are counted in any case
       values = values(:size(values) - 4)
+      values = [values(:quantity_place('contacts') - 1), values(quantity_place('contacts') + 1:)]
    end function values_without_status
 
    !> Names of statuses

@@ -233,6 +233,9 @@ contains
       call new_panel(body, material, length, length, 0.01_wp, [length, 0.1_wp], 0.0_wp, 1.0e6_wp, &
          error)
       call refused(error, "an impact on an edge", "on a support")
+      call new_panel(body, material, length, length, 0.01_wp, [0.1_wp, 0.0_wp], 0.0_wp, 1.0e6_wp, &
+         error)
+      call refused(error, "an impact on another edge", "on a support")
       call new_panel(body, material, 100.0_wp, 100.0_wp, 1.0e-4_wp, [50.0_wp, 50.0_wp], 0.0_wp, &
          1.0e8_wp, error)
       call refused(error, "a plate without end", "too many modes")

@@ -88,6 +88,8 @@ contains
       call check(level_at(0, 0.0_wp) == level_good, "good where nothing is judged")
       do i = 1, size(thresholds)
          if (thresholds(i)%measure == 'energy_loss') cycle
+         ! whole numbers
+         if (thresholds(i)%measure == 'contacts') cycle
          associate (name => thresholds(i)%measure, row => thresholds(i))
             call check(level_at(i, below*row%caution) == level_good, name//" is good")
             call check(level_at(i, above*row%caution) == level_caution, name//": caution")
@@ -95,6 +97,10 @@ contains
             call check(level_at(i, above*row%outside) == level_outside, name//" is outside")
          end associate
       end do
+      i = findloc(thresholds%measure, 'contacts', dim=1)
+      call check(level_at(i, 1.0_wp) == level_good, "one contact")
+      call check(level_at(i, 2.0_wp) == level_caution, "two contacts: caution")
+      call check(level_at(i, 900.0_wp) == level_caution, "many contacts: caution still")
    end subroutine test_thresholds
 
    !> Level of an impact of which one measure is known, or none; it has to be the cause
@@ -125,16 +131,20 @@ contains
       case (4)
          outcome%deflection_ratio = value
       case (5)
-         outcome%weight_ratio = value
+         outcome%highest_mode = 1.0_wp/value
       case (6)
+         outcome%contacts = nint(value)
+      case (7)
+         outcome%weight_ratio = value
+      case (8)
          ! a mass that is too small is judged as one that is too large
          outcome%mass_ratio = 1.0_wp/value
-      case (7)
+      case (9)
          around%yield_strength = scale
          outcome%mean_pressure = scale*value
-      case (8)
+      case (10)
          outcome%axis_tension = value
-      case (9)
+      case (11)
          ! below 0.5 the restitution itself does not matter
          outcome%cor_sphere = 0.25_wp
          outcome%cor_deviation = -0.5_wp*value

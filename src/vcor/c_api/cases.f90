@@ -411,6 +411,9 @@ contains
                join_path(folder, file), given=.true.)
          end do
       end do
+      call case%get('target', 'file', file)
+      if (file /= '') call case%set(case%address('target', 'file'), join_path(folder, file), &
+         given=.true.)
    end subroutine fix_files
 
 end module vcor_c_api_cases

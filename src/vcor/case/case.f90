@@ -309,16 +309,25 @@ contains
       item = 0
    end function find_material
 
-   !> Item of the material of a body
-   pure function material_of(self, body) result(item)
+   !> Item of the material of a body. A target that has no own material is of that of the plate
+   pure recursive function material_of(self, body) result(item)
       class(case_t), intent(in) :: self
-      !> sphere or plate
+      !> sphere, plate or target
       character(len=*), intent(in) :: body
-      !> Index of the material; 0 if there is none of this name
+      !> Index of the material; 0 if there is none of this name, and for a target without material
       integer :: item
 
       character(len=:), allocatable :: name
 
+      item = 0
+      if (body == 'target') then
+         if (self%count(body) == 0) return
+         if (self%row(self%address(body, 'material')) == 0) return
+         if (.not. self%given(body, 'material')) then
+            item = self%material_of('plate')
+            return
+         end if
+      end if
       call self%get(body, 'material', name)
       item = self%find_material(name)
    end function material_of
@@ -511,7 +520,8 @@ contains
          end if
       end associate
       call mark(self, address, entry%given)
-      if (address == self%address('contact', 'mechanics') &
+      if (address%group == find_group('target') &
+          .or. address == self%address('contact', 'mechanics') &
           .or. address == self%address('plate', 'base') &
           .or. address == self%address('plate', 'surface_radius') &
           .or. address == self%address('plate', 'waves') &
@@ -536,20 +546,21 @@ contains
 
    !> Set the keys of the mechanics that the user has not given. By `mechanics` waves, law and
    !> pair; without it a plate on a base has no waves, and with it a second sphere has none either.
-   !> Law and pair are also those of the coupled contact where that is solved
+   !> The surface of a structure has no other waves than those of its modes. Law and pair are also
+   !> those of the coupled contact where that is solved
    pure subroutine choose_mechanics(self)
       type(case_t), intent(inout) :: self
 
       character(len=:), allocatable :: mechanics, base, waves, method
-      logical :: is_exact
+      logical :: is_exact, has_waves
 
       call self%get('contact', 'mechanics', mechanics)
       call self%get('plate', 'base', base)
       call self%get('solver', 'method', method)
       is_exact = mechanics == 'exact'
-      call choose(self, 'plate', 'waves', &
-         trim(merge('body', 'none', is_exact .and. .not. self%has_second_sphere())), &
-         is_exact .or. base /= 'free')
+      has_waves = is_exact .and. .not. (self%has_second_sphere() .or. self%count('target') > 0)
+      call choose(self, 'plate', 'waves', trim(merge('body', 'none', has_waves)), &
+         is_exact .or. base /= 'free' .or. self%count('target') > 0)
       call self%get('plate', 'waves', waves)
       is_exact = is_exact .or. waves == 'body' .or. method == 'coupled'
       call choose(self, 'contact', 'law', 'receding', is_exact)

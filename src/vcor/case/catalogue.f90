@@ -76,6 +76,8 @@ module vcor_case_catalogue
       character(len=32) :: label = ""
       !> Key whose value is looked up in `models`; blank: none
       character(len=32) :: selector = ""
+      !> Whether its presence has a meaning: a completed case has it only if it is given
+      logical :: optional = .false.
    end type group_t
 
    type(interval_t), parameter :: accuracy_range = interval_t(lower=finest_accuracy, &
@@ -83,6 +85,8 @@ module vcor_case_catalogue
    type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
    type(interval_t), parameter :: of_a_grid = interval_t(lower=1.0_wp, upper=real(most_points, wp))
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
+   !> Of damping ratios: a mode that does not oscillate has none
+   type(interval_t), parameter :: of_damping = interval_t(0.0_wp, 1.0_wp, upper_open=.true.)
 
    !> The groups, in the order in which they are printed
    type(group_t), parameter :: groups(*) = [ &
@@ -91,6 +95,8 @@ module vcor_case_catalogue
       group_t("sphere", "The sphere, or another body that strikes", required=.true., &
          selector="shape"), &
       group_t("plate", "The plate", required=.true.), &
+      group_t("target", "What carries the struck surface, if it is of finite size", &
+         selector="body", optional=.true.), &
       group_t("contact", "Law of the contact force"), &
       group_t("material", "A material used by the sphere or the plate", required=.true., &
          repeated=.true., label="name", selector="model"), &
@@ -150,6 +156,42 @@ module vcor_case_catalogue
       key_t("plate", "extent", real_key, &
          "Distance to the nearest edge of the plate, for the measure needed_extent", "m", &
          positive), &
+      !
+      key_t("target", "body", text_key, "Kind of structure", &
+         choices="plate beam rod block modes", required=.true.), &
+      key_t("target", "support", text_key, &
+         "How it is held: a plate at its edges, a beam at its ends, a rod at the far end", &
+         choices="supported clamped cantilever free", models="plate beam rod", required=.true.), &
+      key_t("target", "length", real_key, "Length", "m", positive, models="plate beam rod", &
+         required=.true.), &
+      key_t("target", "width", real_key, "Width", "m", positive, models="plate beam", &
+         required=.true.), &
+      key_t("target", "diameter", real_key, "Diameter of the rod", "m", positive, models="rod", &
+         required=.true.), &
+      key_t("target", "thickness", real_key, &
+         "Thickness along the impact; default: that of &plate, needed if that has a base", "m", &
+         positive, models="plate beam"), &
+      key_t("target", "material", text_key, &
+         "Name of its material; default: that of &plate, needed if that has a base", &
+         models="plate beam rod"), &
+      key_t("target", "position", list_key, &
+         "Place of the impact from the left end, two numbers for a plate; default: middle or tip", &
+         "m", not_negative, models="plate beam"), &
+      key_t("target", "damping_ratio", real_key, &
+         "Damping ratio of each mode, added to those of a file", range=of_damping, &
+         default="0.0", models="plate beam rod modes"), &
+      key_t("target", "mass", real_key, "Mass of the block", "kg", positive, models="block", &
+         required=.true.), &
+      key_t("target", "stiffness", real_key, "Stiffness of the spring behind it; 0: free", "N/m", &
+         not_negative, default="0.0", models="block"), &
+      key_t("target", "damping", real_key, "Damping of the dashpot behind it", "N s/m", &
+         not_negative, default="0.0", models="block"), &
+      key_t("target", "file", text_key, &
+         "File of frequencies, damping ratios and modal masses or mode shapes", models="modes", &
+         required=.true.), &
+      key_t("target", "residual_compliance", real_key, &
+         "Flexibility of the modes that the file leaves out", "m/N", not_negative, &
+         default="0.0", models="modes"), &
       !
       key_t("contact", "mechanics", text_key, &
          "Defaults of law, pair and waves: the paper's, or receding, series and body", &

@@ -4,8 +4,8 @@
 !> `error%item`. The keys have the names of the arguments.
 module vcor_case_cause
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, keys_of, last_row, &
-      list_key
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
+      keys_of, last_row, list_key
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_t
    use vcor_text, only : integer_text, quoted, shortened
@@ -51,9 +51,11 @@ contains
          if (cause%group == 0 .or. entry%given .and. .not. is_given) cause = address
          is_given = is_given .or. entry%given
          associate (key => catalogue(address%row))
-            if (key%value_kind == list_key .and. entry%given) then
+            ! a place is one or two numbers
+            if (key%value_kind == list_key .and. entry%given &
+                .and. .not. groups(address%group)%optional) then
                found = found//' and '//integer_text(size(entry%list))//' '//trim(key%name)
-            else if (key%value_kind /= list_key .and. entry%present) then
+            else if ((key%value_kind /= list_key .or. entry%given) .and. entry%present) then
                found = found//' and '//trim(key%name)//' = ' &
                   //shortened(value_text(key, entry))
             end if
@@ -148,14 +150,18 @@ contains
       !> The address; nowhere if there is no such key
       type(address_t) :: address
 
-      integer :: group
+      integer :: group, owners
 
+      owners = count([(.not. groups(group)%repeated .and. find_key(groups(group)%name, name) > 0, &
+         group=1, size(groups))])
       if (item > 0) then
          address = case%address('material', name, item)
          if (address%group > 0) return
       end if
       ! backwards: for an error about the material of two bodies, take that of the plate
       do group = size(groups), 1, -1
+         ! the structure has keys of names that other groups have, which its errors do not name
+         if (groups(group)%optional .and. owners > 1) cycle
          if (.not. groups(group)%repeated) address = case%address(groups(group)%name, name)
          if (address%group > 0) return
       end do

@@ -62,6 +62,10 @@ module vcor_case_checks
       limits_t('sphere', 'punch_radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'half_thickness', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
+      limits_t('target', 'length', 'm', -endless, 10.0_wp, '', 'is it in mm?'), &
+      limits_t('target', 'width', 'm', -endless, 10.0_wp, '', 'is it in mm?'), &
+      limits_t('target', 'diameter', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
+      limits_t('target', 'thickness', 'm', -endless, 2.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'surface_radius', 'm', -endless, 10.0_wp, '', 'is it in mm?'), &
       limits_t('plate', 'extent', 'm', -endless, 20.0_wp, '', 'is it in mm?'), &
       limits_t('material', 'reference_temperature', 'K', coldest, endless, celsius, ''), &
@@ -111,6 +115,7 @@ contains
       end do
       call check_body(self, 'sphere', error)
       if (.not. allocated(error)) call check_body(self, 'plate', error)
+      if (.not. allocated(error)) call check_target(self, error)
       if (.not. allocated(error)) call check_temperature(self, swept, error)
       if (.not. allocated(error)) call check_coupled(self, error)
       if (.not. allocated(error)) call check_stem(self, error)
@@ -150,7 +155,8 @@ contains
           .or. any(swept%group == group .and. swept%item == item)) return
       case = self
       ! the impact's temperature does not matter to a material that no body uses, or if it is swept
-      if (all(item /= [self%material_of('sphere'), self%material_of('plate')]) &
+      if (all(item /= [self%material_of('sphere'), self%material_of('plate'), &
+          self%material_of('target')]) &
           .or. any(swept == self%address('impact', 'temperature'))) &
          call case%unset(case%address('impact', 'temperature'))
       call material_of_case(case, item, material, error)
@@ -217,12 +223,13 @@ contains
 
       character(len=*), parameter :: reason = 'with impact.temperature the material of the ' &
          //'sphere or that of the plate needs a shift, neither has one'
-      character(len=:), allocatable :: sphere, plate
+      character(len=:), allocatable :: sphere, plate, target
       integer :: i
 
       call self%get('material', 'shift', sphere, self%material_of('sphere'))
       call self%get('material', 'shift', plate, self%material_of('plate'))
-      if (sphere//plate /= '') return
+      call self%get('material', 'shift', target, self%material_of('target'))
+      if (sphere//plate//target /= '') return
       if (self%given('impact', 'temperature')) call self%refuse('impact', 'temperature', 1, &
          'the impact does not read it: '//reason, error)
       do i = 1, size(swept)
@@ -322,6 +329,35 @@ contains
          "there is no material '"//shortened(name)//"' for &"//body//'; ' &
          //suggestion(canonical_name(name), material_names(self)), error)
    end subroutine check_body
+
+   !> Check that a structure has its material, and that the edges of an infinite plate are not given
+   !> with it
+   subroutine check_target(self, error)
+      type(case_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      type(entry_t) :: entry
+      character(len=:), allocatable :: base, body
+
+      if (self%count('target') == 0) return
+      entry = self%entry(self%address('plate', 'extent'))
+      ! what was set is refused with all that the impact does not read
+      if (entry%given .and. .not. allocated(entry%origin)) then
+         call self%refuse('plate', 'extent', 1, 'found extent with &target, which has its edges: ' &
+            //'expected no such key', error)
+         return
+      end if
+      call self%get('target', 'body', body)
+      if (self%row(self%address('target', 'material')) == 0) return
+      if (self%given('target', 'material')) then
+         call check_body(self, 'target', error)
+         return
+      end if
+      call self%get('plate', 'base', base)
+      if (base /= 'free') call self%refuse('target', 'material', 1, "key 'material' is missing " &
+         //"in &target of body '"//body//"', expected the name of a &material: that of &plate " &
+         //'is of the layer on its base', error)
+   end subroutine check_target
 
    !> Check that the stem of file names is not a path
    subroutine check_stem(self, error)

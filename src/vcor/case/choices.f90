@@ -47,6 +47,16 @@ module vcor_case_choices
       choice_t('plate.base', 'free', 'nothing is behind the plate'), &
       choice_t('plate.base', 'bonded', 'a layer glued to a rigid floor'), &
       choice_t('plate.base', 'sliding', 'a layer that lies on a rigid floor without friction'), &
+      choice_t('target.body', 'plate', 'a thin rectangular plate, simply supported at its edges'), &
+      choice_t('target.body', 'beam', 'a slender beam, struck across its length'), &
+      choice_t('target.body', 'rod', 'a slender rod, struck at its end along its length'), &
+      choice_t('target.body', 'block', 'a rigid block on a spring and a dashpot, or free'), &
+      choice_t('target.body', 'modes', 'modes of vibration from a file, as of finite elements'), &
+      choice_t('target.support', 'supported', &
+         'simply supported: the edges of a plate, the ends of a beam'), &
+      choice_t('target.support', 'clamped', 'both ends of a beam, the far end of a rod'), &
+      choice_t('target.support', 'cantilever', 'the left end of a beam, the other one is free'), &
+      choice_t('target.support', 'free', 'not held at all'), &
       choice_t('contact.mechanics', 'paper', "the paper's choices: boltzmann, eq1, relaxing"), &
       choice_t('contact.mechanics', 'exact', 'the exact choices: receding, series, body'), &
       choice_t('contact.law', 'boltzmann', &
@@ -95,6 +105,9 @@ module vcor_case_choices
          "A layer on a rigid floor: plate.base = 'bonded' or 'sliding' with thickness. A " &
          //"plate with nothing behind it bends: plate.waves = 'body'. Columns layer_ratio, " &
          //'layer_stiffening.'), &
+      topic_t(' structure edge beam bar rod anvil cantilever racket modal ', &
+         'A body of finite size that is struck: the group &target. Its waves come back, and it ' &
+         //'may strike the ball again: columns contacts, last_separation, structure_energy.'), &
       topic_t(' ting ', &
          "Contact that recedes: contact.law = 'receding'. T. C. T. Ting, J. Appl. Mech. " &
          //'33 (1966) 845.'), &

@@ -18,17 +18,45 @@ module vcor_case_inputs
    implicit none
    private
 
-   public :: inputs_t, quantity_t, is_same
+   public :: inputs_t, target_inputs_t, quantity_t, is_same
    public :: shape_sphere, shape_true_sphere, shape_cone, shape_punch, shape_power
-   public :: waves_body, of_sphere, of_plate, positive_or_zero
+   public :: waves_body, of_sphere, of_plate, of_target, positive_or_zero
+   public :: target_none, target_plate, target_beam, target_rod, target_block, target_modes
 
    !> Shapes of the striking body
    integer, parameter :: shape_sphere = 1, shape_true_sphere = 2, shape_cone = 3, shape_punch = 4, &
       shape_power = 5
    !> Waves in a plate of any thickness, beside the `waves_*` of a thin one
    integer, parameter :: waves_body = 5
-   !> Places of the two bodies
-   integer, parameter :: of_sphere = 1, of_plate = 2
+   !> Places of the bodies; the last one is the structure that carries the struck surface
+   integer, parameter :: of_sphere = 1, of_plate = 2, of_target = 3
+   !> Kinds of structures
+   integer, parameter :: target_none = 0, target_plate = 1, target_beam = 2, target_rod = 3, &
+      target_block = 4, target_modes = 5
+
+   !> A struck structure; a number that is not given is NaN
+   type :: target_inputs_t
+      !> One of the `target_*` constants
+      integer :: body = target_none
+      !> One of the `support_*` constants of `vcor_impact_body`
+      integer :: support = 0
+      !> Length, width, diameter and thickness [m]
+      real(wp) :: length = unset, width = unset, diameter = unset, thickness = unset
+      !> Place of the impact along length and width [m]; shape (0): the middle, or the tip
+      real(wp), allocatable :: position(:)
+      !> Damping ratio of each mode [-]
+      real(wp) :: damping_ratio = 0.0_wp
+      !> Mass [kg], spring [N/m] and dashpot [N s/m] of a block
+      real(wp) :: mass = unset, stiffness = 0.0_wp, damping = 0.0_wp
+      !> Flexibility of modes left out [m/N]
+      real(wp) :: residual_compliance = 0.0_wp
+      !> Frequencies [Hz], damping ratios [-] and modal masses [kg], shape (3, modes)
+      real(wp), allocatable :: modes(:, :)
+      !> Share of the modes that is kept [-]: less than 1 shows what the others are worth
+      real(wp) :: share = 1.0_wp
+   contains
+      procedure :: put => put_target
+   end type target_inputs_t
 
    !> The inputs; a number that is not given is NaN
    type :: inputs_t
@@ -48,12 +76,12 @@ module vcor_case_inputs
       real(wp) :: punch_radius = unset
       !> C [m^(1-p)] and p [-] of a profile z = C r^p
       real(wp) :: profile_coefficient = unset, profile_power = unset
-      !> Materials of sphere and plate; their lists are compared by identities
-      type(material_data_t) :: material(2)
+      !> Materials of sphere, plate and structure; their lists are compared by identities
+      type(material_data_t) :: material(3)
       !> Yield strengths of sphere and plate [Pa]
       real(wp) :: yield_strength(2) = unset
-      !> Numbers of the materials in the case, for messages; equal: one material
-      integer :: item(2) = 0
+      !> Numbers of the materials in the case, for messages; equal: one material; 0: none
+      integer :: item(3) = 0
       !> One of base_free, base_bonded and base_sliding
       integer :: base = base_free
       !> One of the `waves_*` constants
@@ -66,6 +94,8 @@ module vcor_case_inputs
       real(wp) :: surface_radius = 0.0_wp
       !> Distance to the nearest edge of the plate [m]
       real(wp) :: extent = unset
+      !> The structure that carries the struck surface
+      type(target_inputs_t) :: target
       !> Whether the contact recedes
       logical :: receding = .false.
       !> One of the `pair_*` constants
@@ -76,6 +106,7 @@ module vcor_case_inputs
       procedure :: put
       procedure :: approach_velocity
       procedure :: striking_mass
+      procedure :: target_thickness
       procedure :: is_one_contact
    end type inputs_t
 
@@ -83,8 +114,10 @@ module vcor_case_inputs
    type :: quantity_t
       !> Its key
       character(len=26) :: key = ''
-      !> Whether it is of the material of the sphere, and of the plate
-      logical :: of_body(2) = .false.
+      !> Whether it is of the material of the sphere, of the plate, and of the structure
+      logical :: of_body(3) = .false.
+      !> Whether it is of the structure itself
+      logical :: of_structure = .false.
       !> Index of the number in a list; 0: no list
       integer :: element = 0
    end type quantity_t
@@ -110,6 +143,9 @@ contains
          do i = 1, size(self%material)
             if (quantity%of_body(i)) call put_material(self, i, quantity, value)
          end do
+         return
+      else if (quantity%of_structure) then
+         call self%target%put(quantity, value)
          return
       end if
       select case (quantity%key)
@@ -158,10 +194,43 @@ contains
       end select
    end subroutine put
 
+   !> Set a number of the structure
+   pure subroutine put_target(self, quantity, value)
+      class(target_inputs_t), intent(inout) :: self
+      type(quantity_t), intent(in) :: quantity
+      !> In the unit of the key
+      real(wp), intent(in) :: value
+
+      select case (quantity%key)
+      case ('length')
+         self%length = value
+      case ('width')
+         self%width = value
+      case ('diameter')
+         self%diameter = value
+      case ('thickness')
+         self%thickness = value
+      case ('position')
+         self%position(quantity%element) = value
+      case ('damping_ratio')
+         self%damping_ratio = value
+      case ('mass')
+         self%mass = value
+      case ('stiffness')
+         self%stiffness = value
+      case ('damping')
+         self%damping = value
+      case ('residual_compliance')
+         self%residual_compliance = value
+      case default
+         continue
+      end select
+   end subroutine put_target
+
    !> Set a number of a material
    pure subroutine put_material(self, body, quantity, value)
       type(inputs_t), intent(inout) :: self
-      !> of_sphere or of_plate
+      !> of_sphere, of_plate or of_target
       integer, intent(in) :: body
       type(quantity_t), intent(in) :: quantity
       real(wp), intent(in) :: value
@@ -169,7 +238,7 @@ contains
       real(wp), allocatable :: list(:)
 
       if (quantity%key == 'yield_strength') then
-         self%yield_strength(body) = value
+         if (body <= size(self%yield_strength)) self%yield_strength(body) = value
       else if (quantity%element == 0) then
          if (.not. ieee_is_nan(value)) call self%material(body)%set(trim(quantity%key), value)
       else
@@ -205,6 +274,17 @@ contains
       if (ieee_is_nan(mass)) mass = 4.0_wp/3.0_wp*pi*self%radius**3*density
    end function striking_mass
 
+   !> Thickness of the structure: its own, or that of a plate without a base
+   pure function target_thickness(self) result(thickness)
+      class(inputs_t), intent(in) :: self
+      !> [m]; 0 if there is none
+      real(wp) :: thickness
+
+      thickness = positive_or_zero(self%target%thickness)
+      if (ieee_is_nan(self%target%thickness) .and. self%base == base_free) &
+         thickness = 2.0_wp*self%half_thickness
+   end function target_thickness
+
    !> Whether two sets of inputs have contact modulus, plate and face in common, materials aside
    pure function is_one_contact(self, other) result(same)
       class(inputs_t), intent(in) :: self
@@ -234,7 +314,8 @@ contains
       same = all(is_same([a%time_step, a%end_time, a%accuracy, a%second_coefficient], &
          [b%time_step, b%end_time, b%accuracy, b%second_coefficient])) &
          .and. a%method == b%method .and. a%scheme == b%scheme .and. a%form == b%form &
-         .and. a%quadrature == b%quadrature .and. (a%ghost .eqv. b%ghost)
+         .and. a%quadrature == b%quadrature .and. (a%ghost .eqv. b%ghost) &
+         .and. (a%first_contact .eqv. b%first_contact)
    end function same_settings
 
    !> A positive number; 0 if there is none

@@ -6,7 +6,7 @@ module vcor_case_mechanics
    use vcor_kinds, only : wp
    use vcor_solver_features, only : features, method_for, method_in_use, of_body, of_boltzmann, &
       of_eq1, of_frozen_plate, of_ghost, of_gravity, of_hereditary_plate, of_layer, &
-      of_paper_scheme, of_receding, of_second_term, of_thin_plate
+      of_paper_scheme, of_receding, of_second_term, of_structure, of_thin_plate
    implicit none
    private
 
@@ -40,6 +40,7 @@ contains
       has(of_eq1) = pair == 'eq1' .and. why_no_pair(case) == ''
       gravity = case%number(case%address('impact', 'gravity'))
       if (.not. ieee_is_nan(gravity)) has(of_gravity) = gravity > 0.0_wp
+      has(of_structure) = case%count('target') > 0
       ! a rigid plate has neither waves nor a layer
       if (model_of(case, 'plate') == 'rigid') return
       has(of_body) = waves == 'body'

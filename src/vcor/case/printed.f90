@@ -44,7 +44,7 @@ contains
       if (present(remarks)) remarked = remarks
       do group = 1, size(groups)
          items = self%count(groups(group)%name)
-         if (all .and. .not. groups(group)%repeated) items = 1
+         if (all .and. .not. (groups(group)%repeated .or. groups(group)%optional)) items = 1
          do item = 1, items
             if (buffer%length > 0) call buffer%add(newline)
             call buffer%add("&"//trim(groups(group)%name)//newline)

@@ -18,8 +18,10 @@ module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_cause, only : explain
-   use vcor_case_inputs, only : inputs_t, is_same, of_plate, of_sphere, positive_or_zero, &
-      shape_cone, shape_power, shape_punch, shape_sphere, shape_true_sphere, waves_body
+   use vcor_case_inputs, only : inputs_t, is_same, of_plate, of_sphere, of_target, &
+      positive_or_zero, shape_cone, shape_power, shape_punch, shape_sphere, shape_true_sphere, &
+      target_beam, target_none, target_plate, waves_body
+   use vcor_case_structure, only : build_structure, highest_of_list
    use vcor_case_reader, only : read_inputs
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_numerical, error_t, raise
@@ -30,6 +32,7 @@ module vcor_case_problem
    use vcor_impact_face, only : base_free, base_half_space, face_t, new_face
    use vcor_impact_layer_law, only : layer_t, lay, profile_t
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_structure, only : structure_t
    use vcor_impact_target, only : new_plate, waves_none
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, forgotten_base, surroundings_t
@@ -59,6 +62,8 @@ module vcor_case_problem
       class(material_t), allocatable, private :: sphere
       !> Material of the plate
       class(material_t), allocatable, private :: plate
+      !> Material of a structure, if that has one
+      class(material_t), allocatable, private :: carrier
       !> Whether modulus, plate and face are those of the inputs
       logical, private :: has_contact = .false.
    contains
@@ -106,7 +111,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: mass, factor
-      logical :: is_new(2)
+      logical :: is_new(3)
 
       if (allocated(self%solver) .and. .not. is_same(self%built%settings, inputs%settings)) &
          deallocate (self%solver)
@@ -117,7 +122,8 @@ contains
       call build_material(self%plate, self%built%material(of_plate), inputs%material(of_plate), &
          is_new(of_plate), error)
       if (allocated(error)) error%item = inputs%item(of_plate)
-      if (any(is_new) .or. .not. inputs%is_one_contact(self%built)) self%has_contact = .false.
+      if (any(is_new(:of_plate)) .or. .not. inputs%is_one_contact(self%built)) &
+         self%has_contact = .false.
       if (allocated(error)) return
       if (.not. self%has_contact) call build_contact(self, inputs, error)
       if (allocated(error)) return
@@ -131,6 +137,7 @@ contains
       call set_shape(self, inputs, factor, error)
       if (.not. allocated(error)) call self%impact%launch(inputs%approach_velocity(), mass, &
          factor, error, positive_or_zero(inputs%gravity))
+      if (.not. allocated(error)) call set_structure(self, inputs, error)
       if (allocated(error)) return
       call set_surroundings(self, inputs)
       call check_settings(inputs%settings, self%impact, error)
@@ -139,6 +146,31 @@ contains
       call new_solver(self%solver, inputs%settings, error)
       if (.not. allocated(error)) self%built%settings = inputs%settings
    end subroutine build
+
+   !> Set the structure that carries the struck surface: the modes that count follow from the time
+   !> scale of the contact
+   subroutine set_structure(self, inputs, error)
+      !> The problem, its impact launched
+      type(problem_t), intent(inout) :: self
+      type(inputs_t), intent(in) :: inputs
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(structure_t) :: none_of_it
+      logical :: is_new
+
+      self%impact%target%structure = none_of_it
+      if (inputs%target%body == target_none) return
+      if (inputs%item(of_target) > 0) call build_material(self%carrier, &
+         self%built%material(of_target), inputs%material(of_target), is_new, error)
+      if (allocated(error)) error%item = inputs%item(of_target)
+      if (allocated(error)) return
+      call build_structure(self%impact%target%structure, &
+         inputs, self%impact, self%carrier, error)
+      if (.not. allocated(error)) return
+      if (.not. allocated(error%about)) return
+      if (error%about == 'density') error%item = inputs%item(of_target)
+   end subroutine set_structure
 
    !> Build a material if it is new
    subroutine build_material(material, known, data, is_new, error)
@@ -331,7 +363,13 @@ contains
          return
       end if
       if (outcome%status /= contact_separated) return
-      call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate)
+      if (self%surroundings%is_panel .or. self%surroundings%is_beam) then
+         call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate, &
+            self%carrier)
+      else
+         call assess(outcome, self%impact, trajectory, self%surroundings, self%sphere, self%plate, &
+            self%plate)
+      end if
    end subroutine solve
 
    !> Set the data for the measures of validity
@@ -358,10 +396,15 @@ contains
          if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
          if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
          around%yield_strength = yield_strength(1)
+         around%is_panel = inputs%target%body == target_plate
+         around%is_beam = inputs%target%body == target_beam
+         if ((around%is_panel .or. around%is_beam) .and. .not. around%on_base) &
+            around%thickness = inputs%target_thickness()
+         around%highest_frequency = highest_of_list(inputs%target)
          around%density = self%plate%density()
          around%base = inputs%base
-         if (inputs%base == base_free .and. .not. inputs%half_thickness > 0.0_wp) &
-            around%base = base_half_space
+         if (inputs%base == base_free .and. .not. (inputs%half_thickness > 0.0_wp &
+             .or. around%is_panel)) around%base = base_half_space
       end associate
    end subroutine set_surroundings
 

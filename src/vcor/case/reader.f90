@@ -9,11 +9,14 @@ module vcor_case_reader
    use vcor_case_body, only : read_material
    use vcor_case_case, only : address_t, case_t
    use vcor_case_catalogue, only : catalogue, find_group
-   use vcor_case_inputs, only : inputs_t, of_plate, of_sphere, quantity_t, shape_cone, &
-      shape_power, shape_punch, shape_sphere, shape_true_sphere, waves_body
+   use vcor_case_inputs, only : inputs_t, of_plate, of_sphere, of_target, quantity_t, shape_cone, &
+      shape_power, shape_punch, shape_sphere, shape_true_sphere, target_beam, target_block, &
+      target_modes, target_none, target_plate, target_rod, waves_body
    use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_body, only : support_cantilever, support_clamped, support_free, &
+      support_supported
    use vcor_impact_contact, only : pair_eq1, pair_series
    use vcor_impact_face, only : base_bonded, base_free, base_sliding
    use vcor_impact_target, only : waves_constant, waves_frozen, waves_hereditary, waves_none, &
@@ -36,9 +39,17 @@ module vcor_case_reader
       waves_hereditary, waves_body]
    character(len=*), parameter :: base_names(*) = [character(len=7) :: 'free', 'bonded', 'sliding']
    integer, parameter :: bases(*) = [base_free, base_bonded, base_sliding]
+   character(len=*), parameter :: target_names(*) = [character(len=5) :: 'plate', 'beam', 'rod', &
+      'block', 'modes']
+   integer, parameter :: targets(*) = [target_plate, target_beam, target_rod, target_block, &
+      target_modes]
+   character(len=*), parameter :: support_names(*) = [character(len=10) :: 'supported', 'clamped', &
+      'cantilever', 'free']
+   integer, parameter :: supports(*) = [support_supported, support_clamped, support_cantilever, &
+      support_free]
 
    !> Groups of the bodies, by their places
-   character(len=*), parameter :: bodies(*) = [character(len=6) :: 'sphere', 'plate']
+   character(len=*), parameter :: bodies(*) = [character(len=6) :: 'sphere', 'plate', 'target']
 
 contains
 
@@ -61,12 +72,14 @@ contains
       end if
       call reading%start(case)
       do i = 1, size(bodies)
-         inputs%item(i) = case%material_of(bodies(i))
-         call reading%mark(case%address(bodies(i), 'material'))
+         inputs%item(i) = case%material_of(trim(bodies(i)))
+         if (inputs%item(i) == 0) cycle
+         call reading%mark(case%address(trim(bodies(i)), 'material'))
          call read_material(case, inputs%item(i), reading, inputs%material(i))
       end do
       call read_sphere(case, inputs, reading)
       call read_plate(case, inputs, reading)
+      call read_target(case, inputs, reading)
       call read_contact(case, inputs, reading)
       call read_solver(case, inputs, reading)
    end subroutine read_inputs
@@ -116,6 +129,8 @@ contains
 
       character(len=*), parameter :: keys(*) = [character(len=14) :: 'base', 'waves', &
          'half_thickness', 'thickness', 'extent']
+      character(len=*), parameter :: thicknesses(*) = [character(len=14) :: 'half_thickness', &
+         'thickness']
       character(len=*), parameter :: at_rest = 'the plate is rigid and does not move'
       character(len=:), allocatable :: mechanics, text
       integer :: i
@@ -125,28 +140,76 @@ contains
       if (inputs%material(of_plate)%model == 'rigid') then
          inputs%waves = waves_none
          do i = 1, size(keys)
-            call reading%leave(case%address('plate', keys(i)), at_rest)
+            call reading%leave(case%address('plate', trim(keys(i))), at_rest)
          end do
          call reading%leave(case%address('material', 'density', inputs%item(of_plate)), at_rest)
          return
       end if
       call reading%mark(case%address('material', 'density', inputs%item(of_plate)))
-      call take(case, inputs, reading, 'plate', 'half_thickness')
-      if (.not. inputs%half_thickness > 0.0_wp) &
-         call take(case, inputs, reading, 'plate', 'thickness')
       call reading%get(case, 'plate', 'base', text)
       inputs%base = bases(findloc(base_names == text, .true., dim=1))
+      if (inputs%base == base_free .and. case%given('target', 'thickness')) then
+         do i = 1, size(thicknesses)
+            call reading%leave(case%address('plate', trim(thicknesses(i))), &
+               'target.thickness is that of the plate or beam')
+         end do
+      else
+         call take(case, inputs, reading, 'plate', 'half_thickness')
+         if (.not. inputs%half_thickness > 0.0_wp) &
+            call take(case, inputs, reading, 'plate', 'thickness')
+      end if
       call reading%get(case, 'plate', 'waves', text)
       inputs%waves = waves_of(text)
       call case%get('contact', 'mechanics', mechanics)
-      inputs%waves_are_chosen = mechanics == 'exact' .and. .not. case%given('plate', 'waves')
-      if (text == 'none') then
+      inputs%waves_are_chosen = mechanics == 'exact' .and. .not. case%given('plate', 'waves') &
+         .and. case%count('target') == 0
+      if (case%count('target') > 0) then
+         call reading%leave(case%address('plate', 'extent'), '&target has its edges')
+      else if (text == 'none') then
          call reading%leave(case%address('plate', 'extent'), &
             "with plate.waves = 'none' the plate does not move")
       else
          call take(case, inputs, reading, 'plate', 'extent')
       end if
    end subroutine read_plate
+
+   !> Read the structure that carries the struck surface
+   subroutine read_target(case, inputs, reading)
+      !> The plate read
+      type(case_t), intent(in) :: case
+      type(inputs_t), intent(inout) :: inputs
+      type(reading_t), intent(inout) :: reading
+
+      character(len=*), parameter :: numbers(*) = [character(len=19) :: 'length', 'width', &
+         'diameter', 'thickness', 'damping_ratio', 'mass', 'stiffness', 'damping', &
+         'residual_compliance']
+      character(len=:), allocatable :: text
+      real(wp), allocatable :: list(:)
+      type(address_t) :: address
+      integer :: i
+
+      inputs%target%body = target_none
+      if (case%count('target') == 0) return
+      call reading%get(case, 'target', 'body', text)
+      inputs%target%body = targets(findloc(target_names == text, .true., dim=1))
+      ! the inputs are built as they are: numbers of another body do not count
+      do i = 1, size(numbers)
+         if (case%row(case%address('target', trim(numbers(i)))) == 0) cycle
+         call take(case, inputs, reading, 'target', trim(numbers(i)))
+      end do
+      if (case%row(case%address('target', 'support')) > 0) then
+         call reading%get(case, 'target', 'support', text)
+         inputs%target%support = supports(findloc(support_names == text, .true., dim=1))
+      end if
+      address = case%address('target', 'position')
+      call reading%mark(address)
+      call case%get('target', 'position', inputs%target%position)
+      if (inputs%target%body /= target_modes) return
+      call reading%mark(case%address('target', 'file'))
+      ! the modes that have been read from the file
+      call case%get('target', 'file', list)
+      inputs%target%modes = reshape(list, [3, size(list)/3])
+   end subroutine read_target
 
    !> Waves by their name in a case
    pure function waves_of(name) result(kind)
@@ -267,6 +330,7 @@ contains
 
       item = 1
       quantity%key = key
+      quantity%of_structure = group == 'target'
       if (present(body)) then
          item = inputs%item(body)
          quantity%of_body(body) = .true.
@@ -285,6 +349,7 @@ contains
       quantity%key = catalogue(address%row)%name
       quantity%element = address%element
       if (address%group == find_group('material')) quantity%of_body = inputs%item == address%item
+      quantity%of_structure = address%group == find_group('target')
    end function quantity_at
 
 end module vcor_case_reader

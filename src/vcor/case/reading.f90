@@ -24,7 +24,7 @@ module vcor_case_reading
 
    !> Groups that describe the impact; the other ones are about its points and their files
    character(len=*), parameter :: described(*) = [character(len=8) :: 'impact', 'sphere', 'plate', &
-      'contact', 'material', 'solver']
+      'target', 'contact', 'material', 'solver']
 
    !> Reason why a value is left out
    type :: reason_t
@@ -146,8 +146,9 @@ contains
       reason = 'nothing depends on it'
       if (self%use(address%item, address%row) == is_for_warnings) then
          reason = 'it is for the warning about the band of the data, no number depends on it'
-      else if (address%group == find_group('material') .and. address%item &
-               /= case%material_of('sphere') .and. address%item /= case%material_of('plate')) then
+      else if (address%group == find_group('material') .and. all(address%item /= &
+               [case%material_of('sphere'), case%material_of('plate'), &
+               case%material_of('target')])) then
          reason = 'neither the sphere nor the plate is of this material'
       end if
       i = self%reason_of(address)

@@ -25,6 +25,9 @@ module vcor_impact_body
    !> Square of a shape, over its largest value, below which a mode is not excited: the rounding of
    !> a position on a node
    real(wp), parameter :: at_node = 1.0e-12_wp
+   !> What is wrong with such a position
+   character(len=*), parameter :: on_support = 'the impact is on a support, where the structure ' &
+      //'does not move'
    !> Modes that stand for all those beyond the limit
    integer, parameter :: tail = 8
    !> Most modes of a body: a collocation panel takes 50 ns for each
@@ -172,6 +175,10 @@ contains
             yield(n) = 4.0_wp*along*across/(surface*length*width)
          end do
       end do
+      if (n == 0) then
+         call raise(error, error_input, on_support, about='position')
+         return
+      end if
       call assemble(self, w(:n), yield(:n), static_panel(length, width, position)/stiffness, &
          damping_ratio, material, modulus, highest, 0.0_wp, error)
    end subroutine new_panel
@@ -234,8 +241,7 @@ contains
 
       kept(:size(w)) = yield > at_node*maxval(yield)
       if (.not. (static > 0.0_wp .and. any(kept(:size(w))))) then
-         call raise(error, error_input, 'the impact is on a support, where the structure does ' &
-            //'not move', about='position')
+         call raise(error, error_input, on_support, about='position')
          return
       end if
       residual = static - sum(yield/max(w, tiny(1.0_wp))**2, kept(:size(w)) .and. w > 0.0_wp)

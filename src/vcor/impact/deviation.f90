@@ -151,7 +151,8 @@ contains
    end function law_change
 
    !> Losses of the pulse of an impact to the face of its plate
-   pure subroutine face_losses(losses, outcome, impact, plate, base, thickness, mobility)
+   pure subroutine face_losses(losses, outcome, impact, plate, base, thickness, mobility, &
+                               has_modes)
       type(face_losses_t), intent(out) :: losses
       !> Outcome of a separation, its loss tangent at pi/t0 and radius of contact set
       type(outcome_t), intent(in) :: outcome
@@ -163,6 +164,9 @@ contains
       !> Thickness H [m]; any for a half space
       real(wp), intent(in) :: thickness
       type(mobility_t), intent(inout) :: mobility
+      !> Whether the model is a thin plate by its modes: up to the first reflection it is an
+      !> infinite one that remembers
+      logical, intent(in) :: has_modes
 
       complex(wp) :: s, rate, modulus, extra, thin
       real(wp) :: time, decay, factor, alpha(2)
@@ -185,9 +189,9 @@ contains
          extra = extra/(modulus*plate%plane_strain_factor())
          losses%real_face = losses%real_face + real(amplitudes(i)*rate*extra, wp)
          losses%reaction = losses%reaction + real(amplitudes(i)*extra, wp)
-         if (.not. impact%target%moves()) cycle
+         if (.not. (impact%target%moves() .or. has_modes)) cycle
          thin = 1.0_wp/s
-         if (impact%target%hereditary()) then
+         if (impact%target%hereditary() .or. has_modes) then
             thin = thin*sqrt(3.0_wp/(plate%density()*plate%plane_strain_factor()*modulus)) &
                /(4.0_wp*thickness**2)
             alpha = 1.0_wp

@@ -44,7 +44,7 @@ module vcor_impact_outcome
       real(wp) :: residual_ratio = none
       !> Hysteresis W_h = int F ds [J]
       real(wp) :: hysteresis_energy = none
-      !> Energy radiated into the plate W_wave = int F dU [J]
+      !> Energy radiated into the plate, or given to a structure, W_wave = int F dU [J]
       real(wp) :: wave_energy = none
       !> All the energy that the sphere loses, int F dz = W_h + W_wave [J]
       real(wp) :: energy_loss = none
@@ -56,13 +56,15 @@ module vcor_impact_outcome
       real(wp) :: weight_work = none
       !> Imbalance of the energies: initial - final energy + work of the weight - energy loss [J]
       real(wp) :: energy_imbalance = none
-      !> Number of contacts: more than one if a structure strikes again
-      integer :: contacts = 1
+      !> Number of contacts: more than one if a structure strikes again; 0 without a result
+      integer :: contacts = 0
       !> Time of the last separation [s]
       real(wp) :: last_separation = none
+      !> Restitution of the sphere at the end of the first contact [-]
+      real(wp) :: first_cor_sphere = none
       !> Energy left in the modes of a structure at the last separation [J]; NaN if its material
       !> relaxes
-      real(wp) :: structure_energy = 0.0_wp
+      real(wp) :: structure_energy = none
       !> Lowest frequency of interest, 2 pi/t0 [rad/s]
       real(wp) :: min_frequency = none
       !> Zener's inelasticity parameter lambda [-]
@@ -106,6 +108,8 @@ module vcor_impact_outcome
       real(wp) :: needed_extent = none
       !> Largest displacement of the plate divided by its thickness [-]
       real(wp) :: deflection_ratio = none
+      !> Highest frequency of a list of modes, times t0/pi [-]
+      real(wp) :: highest_mode = none
       !> Weight of the sphere divided by the largest force [-]
       real(wp) :: weight_ratio = none
       !> Mass divided by that of a solid ball of the radius and the density of its material [-]
@@ -133,6 +137,7 @@ module vcor_impact_outcome
       procedure :: misses
       procedure :: gains_energy
       procedure :: is_coupled
+      procedure :: has_structure
    end type outcome_t
 
 contains
@@ -168,10 +173,13 @@ contains
       impulse = trajectory%state(col_impulse, n) &
          - impact%mass*impact%gravity*outcome%contact_time
       outcome%last_separation = outcome%contact_time
+      outcome%contacts = 1
+      outcome%structure_energy = 0.0_wp
       if (impact%target%structure%exists()) then
          outcome%contact_time = trajectory%first_end
          outcome%contacts = trajectory%contacts
          outcome%structure_energy = trajectory%structure_energy
+         outcome%first_cor_sphere = -trajectory%first_velocity/impact%velocity
       end if
       outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
       if (impact%target%structure%exists()) outcome%cor = (trajectory%rigid_velocity &
@@ -254,6 +262,15 @@ contains
 
       is_coupled = ieee_is_nan(self%wave_energy) .and. .not. ieee_is_nan(self%energy_loss)
    end function is_coupled
+
+   !> Whether a structure was struck
+   elemental function has_structure(self)
+      !> The outcome of an impact that ended in separation
+      class(outcome_t), intent(in) :: self
+      logical :: has_structure
+
+      has_structure = .not. ieee_is_nan(self%first_cor_sphere)
+   end function has_structure
 
    !> Whether the sphere or the two bodies separate with more energy than they had, beyond the
    !> stated errors: the sum of all forces on it did work, or it sank so far that its weight did

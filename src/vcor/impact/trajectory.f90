@@ -93,6 +93,8 @@ module vcor_impact_trajectory
       !> follows the separation, or may
       integer :: contacts = 1
       real(wp) :: first_end = unset
+      !> Velocity of the sphere at that end [m/s]
+      real(wp) :: first_velocity = unset
       logical :: returns = .false.
       !> Velocity of the structure's rigid motion [m/s], and energy left in its modes [J], at the
       !> last separation

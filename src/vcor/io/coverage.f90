@@ -54,12 +54,12 @@ contains
       character(len=remark_length), allocatable, intent(out) :: remarks(:)
 
       character(len=:), allocatable :: name
-      integer :: items(2), i
+      integer :: items(3), i
 
       allocate (remarks(0))
-      items = [case%material_of('sphere'), case%material_of('plate')]
-      do i = 1, merge(1, 2, items(1) == items(2))
-         if (items(i) == 0) cycle
+      items = [case%material_of('sphere'), case%material_of('plate'), case%material_of('target')]
+      do i = 1, size(items)
+         if (items(i) == 0 .or. any(items(:i - 1) == items(i))) cycle
          call case%get('material', 'name', name, items(i))
          name = "'"//printable(name)//"'"
          call add(beyond_band(case, grid, outcomes, items(i), name))
@@ -88,10 +88,10 @@ contains
 
       character(len=*), parameter :: keys(*) = [character(len=22) :: 'valid_from', 'valid_to', &
          'valid_temperature_from', 'valid_temperature_to']
-      integer :: items(2), i, j
+      integer :: items(3), i, j
 
       has_data = .false.
-      items = [case%material_of('sphere'), case%material_of('plate')]
+      items = [case%material_of('sphere'), case%material_of('plate'), case%material_of('target')]
       do i = 1, size(items)
          if (items(i) == 0) cycle
          has_data = has_data .or. data_file(case, items(i)) /= ''

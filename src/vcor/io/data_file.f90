@@ -1,9 +1,12 @@
-!> Reads the data files of materials: plain text of two columns with a comma between them
+!> Reads the data files of a case: plain text of columns with a comma between them
 !>
 !> The first line names both columns with their units, `time [s],relaxation_modulus [Pa]` or
 !> `temperature [K],log10_shift_factor [1]`. A file of moduli may have no such line, or no units in
-!> it, if the case gives time_unit and modulus_unit. Text after a # and blank lines are ignored. All
-!> other forms are refused: vcor table makes a plain file of what instruments write.
+!> it, if the case gives time_unit and modulus_unit. A file of the modes of a structure has three
+!> columns in any order, `frequency [Hz],damping_ratio,modal_mass [kg]` or in place of the last one
+!> `mode_shape [kg^-0.5]` at the struck point, of shapes that are normalised by the mass. Text after
+!> a # and blank lines are ignored. All other forms are refused: vcor table makes a plain file of
+!> what instruments write.
 module vcor_io_data_file
    use vcor_case_case, only : case_t
    use vcor_error, only : error_input, error_t, raise
@@ -17,7 +20,7 @@ module vcor_io_data_file
    implicit none
    private
 
-   public :: read_data, data_file, data_folder, file_keys
+   public :: read_data, data_file, modes_file, data_folder, file_keys
 
    !> Keys of &material that name a data file
    character(len=*), parameter :: file_keys(*) = [character(len=10) :: 'file', 'shift_file']
@@ -32,20 +35,24 @@ module vcor_io_data_file
    character(len=*), parameter :: kelvin_names = 'K', celsius_names = 'C degC'
    !> Zero of the Celsius scale [K]
    real(wp), parameter :: ice_point = 273.15_wp
+   !> Most columns of a file
+   integer, parameter :: most_columns = 3
    !> Longest name or unit of a column
    integer, parameter :: longest_word = 40
 
-   !> A file of two columns
+   !> A file of columns
    type :: plain_t
+      !> Number of columns
+      integer :: columns = 2
       !> Name for messages
       character(len=:), allocatable :: name
       !> Name of the file and how to make a plain one of it, for messages
       character(len=:), allocatable :: advice
       !> Names and units of the columns; blank if the file does not state them
-      character(len=longest_word) :: names(2) = '', units(2) = ''
+      character(len=longest_word) :: names(most_columns) = '', units(most_columns) = ''
       !> Line of the names; 0: none
       integer :: head = 0
-      !> The numbers, shape (2, n)
+      !> The numbers, shape (columns, n)
       real(wp), allocatable :: points(:, :)
       !> Their lines, shape (n)
       integer, allocatable :: lines(:)
@@ -56,7 +63,8 @@ module vcor_io_data_file
 contains
 
    !> Read the data files of a validated case: the points become `times` and `moduli` of their
-   !> material, keys that users cannot set, and those of a shift become the list `shift_file`
+   !> material, keys that users cannot set, and those of a shift become the list `shift_file`.
+   !> Frequencies [Hz], damping ratios and modal masses [kg] of a structure become the list `file`
    subroutine read_data(case, error)
       type(case_t), intent(inout) :: case
       !> Error of code `error_file` if a file cannot be read, `error_input` if its contents are
@@ -70,7 +78,8 @@ contains
       do item = 1, case%count('material')
          path = data_file(case, item, 'shift_file')
          if (path /= '') then
-            call read_file('shift_file', 'a file of temperatures and shift factors')
+            call read_file(case%location('material', 'shift_file', item), &
+               'a file of temperatures and shift factors')
             if (.not. allocated(error)) call check_shift(plain, error)
             if (allocated(error)) return
             call case%set(case%address('material', 'shift_file', item), &
@@ -78,26 +87,35 @@ contains
          end if
          path = data_file(case, item)
          if (path == '') cycle
-         call read_file('file', 'a file of times and moduli')
+         call read_file(case%location('material', 'file', item), 'a file of times and moduli')
          if (.not. allocated(error)) call check_moduli(plain, case, item, error)
          if (allocated(error)) return
          call case%set(case%address('material', 'times', item), plain%points(1, :), given=.false.)
          call case%set(case%address('material', 'moduli', item), plain%points(2, :), given=.false.)
       end do
+      path = modes_file(case)
+      if (path == '') return
+      call read_file(case%location('target', 'file'), 'a file of the modes of a structure', 3)
+      if (.not. allocated(error)) call check_modes(plain, error)
+      if (.not. allocated(error)) call case%set(case%address('target', 'file'), &
+         reshape(plain%points, [size(plain%points)]), given=.true.)
 
    contains
 
-      !> Read the file named by a key
-      subroutine read_file(key, kind)
-         character(len=*), intent(in) :: key, kind
+      !> Read the file at `path`
+      subroutine read_file(place, kind, columns)
+         !> Place of the key that names it, and what it is, for messages
+         character(len=*), intent(in) :: place, kind
+         !> Number of columns; absent: 2
+         integer, intent(in), optional :: columns
 
          character(len=:), allocatable :: text
 
          call read_text_file(path, text, error, kind=kind)
          if (allocated(error)) then
-            error%message = case%location('material', key, item)//': '//error%message
+            error%message = place//': '//error%message
          else
-            call read_plain(text, printable(path), plain, error)
+            call read_plain(text, printable(path), plain, error, columns)
          end if
       end subroutine read_file
    end subroutine read_data
@@ -119,6 +137,17 @@ contains
       if (path /= '') path = join_path(data_folder(case), path)
    end function data_file
 
+   !> Path of the file of the modes of a structure, relative to the folder of the case
+   pure function modes_file(case) result(path)
+      type(case_t), intent(in) :: case
+      !> The path; empty if the case has no such file
+      character(len=:), allocatable :: path
+
+      call case%get('target', 'file', path)
+      if (case%row(case%address('target', 'file')) == 0) path = ''
+      if (path /= '') path = join_path(data_folder(case), path)
+   end function modes_file
+
    !> Folder of the data files of a case
    pure function data_folder(case) result(folder)
       type(case_t), intent(in) :: case
@@ -129,24 +158,30 @@ contains
       if (allocated(case%folder)) folder = case%folder
    end function data_folder
 
-   !> Read two columns with or without names
-   subroutine read_plain(text, name, plain, error)
+   !> Read columns with or without names
+   subroutine read_plain(text, name, plain, error, columns)
       character(len=*), intent(in) :: text
       !> Name of the file, for messages
       character(len=*), intent(in) :: name
       type(plain_t), intent(out) :: plain
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Number of columns, 2 or 3; absent: 2
+      integer, intent(in), optional :: columns
 
       character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
       character(len=*), parameter :: line_feed = achar(10)
       character(len=:), allocatable :: line, message
-      integer :: first, last, n
+      integer :: first, last, n, least
 
       plain%name = name
       plain%advice = '; vcor table '//name//' > t.csv makes such a file of others'
+      if (present(columns)) plain%columns = columns
+      ! vcor table makes files of two columns
+      if (plain%columns > 2) plain%advice = ''
+      least = merge(2, 1, plain%columns == 2)
       n = count([(text(first:first) == line_feed, first=1, len(text))]) + 1
-      allocate (plain%points(2, n), plain%lines(n))
+      allocate (plain%points(plain%columns, n), plain%lines(n))
       n = 0
       first = 1
       if (index(text, byte_order_mark) == 1) first = 1 + len(byte_order_mark)
@@ -162,13 +197,14 @@ contains
          call complain(plain, plain%last_line, message, error)
          return
       end do
-      if (n < 2) call complain(plain, max(1, plain%last_line), 'found '//integer_text(n) &
-         //trim(merge(' point ', ' points', n == 1))//', expected 2 at least', error)
+      if (n < least) call complain(plain, max(1, plain%last_line), 'found '//integer_text(n) &
+         //trim(merge(' point ', ' points', n == 1))//', expected '//integer_text(least) &
+         //' at least', error)
       plain%points = plain%points(:, :n)
       plain%lines = plain%lines(:n)
    end subroutine read_plain
 
-   !> Take a line: the names, or two numbers
+   !> Take a line: the names, or the numbers
    subroutine take_line(plain, line, n, message)
       type(plain_t), intent(inout) :: plain
       !> The line without remark and without blanks around it
@@ -178,33 +214,36 @@ contains
       !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
-      character(len=len(line)) :: cells(2)
-      integer :: columns, i, mark
+      character(len=len(line)) :: cells(most_columns)
+      integer :: columns, first, i, mark
 
-      mark = index(line, ',')
       columns = 1 + count([(line(i:i) == ',', i=1, len(line))])
       if (has_control(line)) then
-         message = 'found a control character, expected a text file of two columns with a comma ' &
-            //'between them'
-      else if (columns /= 2) then
+         message = 'found a control character, expected a text file of '//trim(merge('two  ', &
+            'three', plain%columns == 2))//' columns with a comma between them'
+      else if (columns /= plain%columns) then
          message = 'found '//integer_text(columns)//trim(merge(' column ', ' columns', &
-            columns == 1))//', expected 2 with a comma between them'
+            columns == 1))//', expected '//integer_text(plain%columns)//' with a comma between them'
       end if
       if (allocated(message)) then
          message = message//plain%advice
          return
       end if
-      cells(1) = stripped(line(:mark - 1))
-      cells(2) = stripped(line(mark + 1:))
-      if (n == 0 .and. plain%head == 0 .and. .not. (looks_numeric(trim(cells(1))) &
-          .or. looks_numeric(trim(cells(2))))) then
+      first = 1
+      do i = 1, plain%columns
+         mark = first + index(line(first:)//',', ',') - 1
+         cells(i) = stripped(line(first:mark - 1))
+         first = mark + 1
+      end do
+      if (n == 0 .and. plain%head == 0 .and. .not. any([(looks_numeric(trim(cells(i))), &
+          i=1, plain%columns)])) then
          plain%head = plain%last_line
-         do i = 1, 2
+         do i = 1, plain%columns
             call take_name(trim(cells(i)), plain%names(i), plain%units(i))
          end do
          return
       end if
-      do i = 1, 2
+      do i = 1, plain%columns
          call read_real(trim(cells(i)), 'a number', plain%points(i, n + 1), message)
          if (.not. allocated(message)) cycle
          if (scan(trim(cells(i)), '; '//achar(9)) > 0) message = message//plain%advice
@@ -394,6 +433,95 @@ contains
          end if
       end associate
    end subroutine check_point
+
+   !> Check names, units and numbers of the modes of a structure; the columns become frequency [Hz],
+   !> damping ratio [-] and modal mass [kg], infinite on a node
+   subroutine check_modes(plain, error)
+      type(plain_t), intent(inout) :: plain
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=*), parameter :: example = ", expected 'frequency [Hz],damping_ratio," &
+         //"modal_mass [kg]', or mode_shape [kg^-0.5] in place of the mass"
+      !> Largest modal mass and frequency, whose squares are numbers
+      real(wp), parameter :: largest = 1.0e60_wp
+      character(len=:), allocatable :: message
+      real(wp), allocatable :: points(:, :)
+      integer :: i, j, column(3), rigid
+      logical :: is_shape
+
+      column = 0
+      is_shape = .false.
+      if (plain%head == 0) message = 'found numbers without names'//example
+      j = 0
+      do i = 1, plain%columns
+         if (allocated(message)) exit
+         select case (lower(trim(plain%names(i))))
+         case ('frequency')
+            j = 1
+            if (plain%units(i) /= 'Hz') message = unit_message('Hz')
+         case ('damping_ratio')
+            j = 2
+            if (all(plain%units(i) /= [' ', '1'])) message = unit_message('1')
+         case ('modal_mass')
+            j = 3
+            if (plain%units(i) /= 'kg') message = unit_message('kg')
+         case ('mode_shape')
+            j = 3
+            is_shape = .true.
+            if (plain%units(i) /= 'kg^-0.5') message = unit_message('kg^-0.5')
+         case default
+            message = "found '"//trim(plain%names(i))//"'"//example
+         end select
+         if (allocated(message)) exit
+         if (column(j) > 0) message = "found '"//trim(plain%names(i))//"' after '" &
+            //trim(plain%names(column(j)))//"'"//example
+         column(j) = i
+      end do
+      if (allocated(message)) then
+         call complain(plain, max(1, plain%head), message, error)
+         return
+      end if
+      points = plain%points(column, :)
+      rigid = 0
+      do i = 1, size(plain%lines)
+         if (.not. (points(1, i) >= 0.0_wp .and. points(1, i) <= largest)) then
+            message = 'found '//real_text(points(1, i))//', expected a frequency >= 0'
+         else if (.not. (points(2, i) >= 0.0_wp .and. points(2, i) < 1.0_wp)) then
+            message = 'found '//real_text(points(2, i))//', expected a damping ratio in [0, 1)'
+         else if (.not. is_shape .and. .not. (points(3, i) > 0.0_wp &
+                  .and. points(3, i) <= largest)) then
+            message = 'found '//real_text(points(3, i))//', expected a modal mass > 0'
+         else if (.not. abs(points(3, i)) <= largest) then
+            message = 'found '//real_text(points(3, i))//', expected the shape of a mode, ' &
+               //'normalised by its mass'
+         else if (.not. points(1, i) > 0.0_wp) then
+            rigid = rigid + 1
+            if (rigid > 2) message = 'found a third mode of frequency 0, expected at most two: ' &
+               //'the struck point moves along one line, and turns with the body'
+         end if
+         if (allocated(message)) then
+            call complain(plain, plain%lines(i), message, error)
+            return
+         end if
+         if (is_shape) points(3, i) = 1.0_wp/max(points(3, i)**2, tiny(1.0_wp))
+      end do
+      call move_alloc(points, plain%points)
+
+   contains
+
+      !> Message about a unit
+      function unit_message(unit) result(text)
+         !> Expected one
+         character(len=*), intent(in) :: unit
+         character(len=:), allocatable :: text
+
+         text = "found '"//trim(plain%units(i))//"' as unit of "//trim(plain%names(i)) &
+            //', expected '//unit
+         if (plain%units(i) == '') text = 'found no unit of '//trim(plain%names(i)) &
+            //', expected ['//unit//']'
+      end function unit_message
+   end subroutine check_modes
 
    !> Check names, units and numbers of a table of shift factors; the temperatures become K and rise
    subroutine check_shift(plain, error)

@@ -13,7 +13,7 @@ module vcor_io_dump
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_case_reader, only : read_case_text
-   use vcor_io_data_file, only : data_file, file_keys
+   use vcor_io_data_file, only : data_file, file_keys, modes_file
    use vcor_io_file, only : read_text_file
    use vcor_io_path, only : folder_of, join_path
    use vcor_io_restart, only : crc32
@@ -61,6 +61,7 @@ contains
             if (data_file(case, item, trim(file_keys(i))) /= '') n = n + 1
          end do
       end do
+      if (modes_file(case) /= '') n = n + 1
       call put(buffer, integer_text(n))
       do item = 1, case%count('material')
          do i = 1, size(file_keys)
@@ -71,6 +72,12 @@ contains
             call put(buffer, sum_of(path))
          end do
       end do
+      path = modes_file(case)
+      if (path /= '') then
+         call case%get('target', 'file', fields)
+         call put(buffer, fields)
+         call put(buffer, sum_of(path))
+      end if
       call put(buffer, given_text(case))
       do group = 1, size(groups)
          do item = 1, case%count(groups(group)%name)

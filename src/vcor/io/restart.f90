@@ -70,6 +70,8 @@ contains
             hash = crc32(transfer(numbers, repeat(' ', 8*size(numbers))), hash)
          end do
       end do
+      call case%get('target', 'file', numbers)
+      hash = crc32(transfer(numbers, repeat(' ', 8*size(numbers))), hash)
    end function hash_of
 
    !> Whether the file is open

@@ -19,7 +19,7 @@ module vcor_solver_features
    public :: unread_t, unread, why_unread, own_rule_t, own_rules, refusal_t, refusals, reads
    public :: ive, direct, paper, coupled, of_body, of_thin_plate, of_hereditary_plate, &
       of_frozen_plate, of_layer, of_viscosity, of_boltzmann, of_receding, of_eq1, of_gravity, &
-      of_second_term, of_ghost, of_paper_scheme
+      of_second_term, of_ghost, of_paper_scheme, of_structure
 
    !> Names of the methods in the table: the schemes product and adams_bashforth of method direct
    !> are direct and paper
@@ -32,7 +32,7 @@ module vcor_solver_features
    integer, parameter :: of_body = 5, of_paper_scheme = 6, of_thin_plate = 7, &
       of_hereditary_plate = 8, of_frozen_plate = 9, of_layer = 10, of_boltzmann = 11, &
       of_receding = 12, of_eq1 = 13, of_viscosity = 14, of_gravity = 15, of_second_term = 16, &
-      of_ghost = 17
+      of_ghost = 17, of_structure = 18
 
    !> A feature of an impact, or of the way in which it is to be solved
    type :: feature_t
@@ -60,7 +60,8 @@ module vcor_solver_features
       feature_t('a dashpot', 'viscosity'), &
       feature_t('a weight', 'gravity'), &
       feature_t('the second term of the Volterra series', 'volterra_order = 2'), &
-      feature_t('motion after the separation', 'continue_after_separation')]
+      feature_t('motion after the separation', 'continue_after_separation'), &
+      feature_t('a struck structure', '&target')]
 
    !> A feature that methods, or other features, exclude
    type :: refusal_t
@@ -126,6 +127,19 @@ module vcor_solver_features
       refusal_t([paper, 0, 0], of_hereditary_plate, 'adams_bashforth differentiates ' &
       //"U = alpha(t) I, which a hereditary plate does not have; use method = 'ive', or " &
       //"'direct' with scheme = 'product'", 'waves scheme'), &
+      refusal_t([of_body, of_thin_plate, 0], of_structure, 'these waves are those of an infinite ' &
+      //"plate, the structure of &target is a finite one: expected waves = 'none', or no &target", &
+      'waves body'), &
+      refusal_t([coupled, 0, 0], of_structure, &
+      "a struck structure is solved by method = 'ive' or 'direct'", 'method body'), &
+      refusal_t([paper, 0, 0], of_structure, "adams_bashforth marches the paper's wave equation " &
+      //"of a plate; a struck structure is solved by 'ive', or 'direct' with scheme = 'product'", &
+      'scheme body'), &
+      refusal_t([of_second_term, 0, 0], of_structure, 'the second term of the Volterra series is ' &
+      //'not solved with a structure: expected volterra_order = 1', 'volterra_order body'), &
+      refusal_t([of_ghost, 0, 0], of_structure, 'a structure may strike again after the ' &
+      //'separation, which is solved: continuing has no meaning', &
+      'continue_after_separation body'), &
       refusal_t([paper, 0, 0], of_viscosity, "scheme = 'adams_bashforth' has no term for a " &
       //"viscosity; use scheme = 'product' or method = 'ive'")]
 

@@ -7,8 +7,8 @@ module vcor_solver_type
    use vcor_impact_trajectory, only : contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : pi, wp
    use vcor_solver_features, only : features, of_body, of_frozen_plate, of_ghost, of_gravity, &
-      of_hereditary_plate, of_layer, of_paper_scheme, of_receding, of_second_term, of_thin_plate, &
-      of_viscosity
+      of_hereditary_plate, of_layer, of_paper_scheme, of_receding, of_second_term, of_structure, &
+      of_thin_plate, of_viscosity
    implicit none
    private
 
@@ -82,6 +82,7 @@ contains
       has(of_thin_plate) = impact%target%moves()
       has(of_hereditary_plate) = impact%target%hereditary()
       has(of_frozen_plate) = impact%target%frozen()
+      has(of_structure) = impact%target%structure%exists()
       has(of_layer) = impact%law%is_of_layer()
       has(of_receding) = impact%law%receding
       has(of_viscosity) = impact%kernel_viscosity() > 0.0_wp

@@ -148,7 +148,7 @@ contains
          outcome%residual_ratio)
       call list%add('hysteresis_energy', 'W_h', 'J', 'energy lost in the contact', &
          outcome%hysteresis_energy)
-      call list%add('wave_energy', 'W_wave', 'J', 'energy radiated into the plate', &
+      call list%add('wave_energy', 'W_wave', 'J', 'energy given to the plate or structure', &
          outcome%wave_energy)
       call list%add('energy_loss', 'W', 'J', 'all that the sphere lost, int F dz', &
          outcome%energy_loss)
@@ -156,6 +156,12 @@ contains
          outcome%initial_energy)
       call list%add('energy_imbalance', 'dW', 'J', 'energy imbalance: lost, not accounted for', &
          outcome%energy_imbalance)
+      call list%add('contacts', 'n', '1', 'number of contacts with a structure', &
+         real(outcome%contacts, wp), is_whole=.true.)
+      call list%add('last_separation', 't_n', 's', 'time of the last separation', &
+         outcome%last_separation)
+      call list%add('structure_energy', 'W_s', 'J', 'energy left in a structure', &
+         outcome%structure_energy)
       call list%add('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0', &
          outcome%min_frequency)
       call list%add('inelasticity', 'lambda', '1', "Zener's inelasticity parameter", &
@@ -192,6 +198,8 @@ contains
          outcome%needed_extent)
       call list%add('deflection_ratio', 'U/2h', '1', 'largest plate displacement / thickness', &
          outcome%deflection_ratio)
+      call list%add('highest_mode', 'w_m/w_0', '1', &
+         'highest mode of a file, times t0/pi', outcome%highest_mode)
       call list%add('weight_ratio', 'mg/F', '1', 'ratio of the weight of the sphere to max_force', &
          outcome%weight_ratio)
       call list%add('mass_ratio', 'm/m_s', '1', 'mass / mass of a solid ball of its density', &

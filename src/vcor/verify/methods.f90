@@ -6,7 +6,8 @@
 !> motion in common, so a result on which they agree is its solution. The judgement is whether they
 !> agree within their stated errors. The coupled contact has no second method: it is solved at the
 !> accuracy of the case and at a tenth of it, or at half of the error it states if that is less, so
-!> that the meshes differ; at half of the error, too, if a tenth is out of reach.
+!> that the meshes differ; at half of the error, too, if a tenth is out of reach. Of a structure
+!> the methods solve the first contact: internal variables follow no other.
 module vcor_verify_methods
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
       ieee_value
@@ -100,6 +101,8 @@ module vcor_verify_methods
       logical :: two_methods = .true.
       !> Whether direct is one of them
       logical :: has_direct = .true.
+      !> Whether it is the first contact with a structure
+      logical :: first_contact = .false.
       !> Whether the bodies separate in all solutions
       logical :: separated = .false.
       !> Quantities, defined if they separate
@@ -131,6 +134,7 @@ contains
          call compare_coupled(case, problem%impact, comparison, error)
          return
       end if
+      comparison%first_contact = case%count('target') > 0
       call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
       associate (first => comparison%attempts(attempt_first), &
@@ -153,8 +157,9 @@ contains
          end if
          if (.not. allocated(error)) call solve_direct(comparison%attempts, settings, impact, error)
          if (allocated(error)) return
-         if (method_of(case) == 'direct' .and. (comparison%two_methods &
-            .or. scheme /= 'product' .or. case%given('solver', 'time_step'))) then
+         if (method_of(case) == 'direct' .and. .not. comparison%first_contact &
+             .and. (comparison%two_methods .or. scheme /= 'product' &
+             .or. case%given('solver', 'time_step'))) then
             own%label = 'case: '//scheme
             if (case%given('solver', 'time_step')) &
                call case%get('solver', 'time_step', own%time_step)
@@ -233,6 +238,7 @@ contains
 
       settings%method = method
       settings%scheme = 'product'
+      settings%first_contact = case%count('target') > 0
       settings%accuracy = default_accuracy(method)
       if (case%given('solver', 'accuracy')) &
          call case%get('solver', 'accuracy', settings%accuracy)

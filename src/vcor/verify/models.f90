@@ -2,21 +2,25 @@
 module vcor_verify_models
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
+   use vcor_case_catalogue, only : find_group
    use vcor_case_cause, only : explain
-   use vcor_case_inputs, only : inputs_t, of_plate, shape_punch
+   use vcor_case_inputs, only : inputs_t, of_plate, of_target, shape_punch, target_block, &
+      target_none, target_plate, target_rod
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_reader, only : read_inputs, waves_of
    use vcor_impact_contact, only : pair_eq1, pair_series
-   use vcor_error, only : error_t
+   use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_kinds, only : wp
+   use vcor_impact_target, only : waves_hereditary
+   use vcor_kinds, only : pi, wp
+   use vcor_material, only : material_t, new_material
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_solver, only : solve_impact
    use vcor_words, only : contains_word, list_of_words, longest_name
    implicit none
    private
 
-   public :: model_t, solve_models, solve_exact, differ
+   public :: model_t, solve_models, solve_exact, has_exact_contact, differ
 
    !> The case with one plate model, one contact law and one pair
    type :: model_t
@@ -27,6 +31,11 @@ module vcor_verify_models
       logical :: given = .false.
       !> Whether the plate is taken as a half space, without its thickness
       logical :: is_half_space = .false.
+      !> With a structure: what is solved, share of the modes that is kept, and whether the
+      !> structure has no ends
+      character(len=10) :: label = ''
+      real(wp) :: share = 1.0_wp
+      logical :: is_infinite = .false.
       !> Reason why there is no outcome, one line; unallocated if there is one
       character(len=:), allocatable :: failure
       type(outcome_t) :: outcome
@@ -57,6 +66,10 @@ contains
       call case%get('contact', 'law', law)
       call case%get('contact', 'pair', pair)
       call case%get('plate', 'base', base)
+      if (case%count('target') > 0) then
+         call solve_structures(case, models)
+         return
+      end if
       n = 0
       call problem_of_case(problem, case, error)
       has_law = problem%reading%has(case%address('contact', 'law'))
@@ -95,6 +108,86 @@ contains
       end do
       allocate (models, source=all(:n))
    end subroutine solve_models
+
+   !> Solve a case with a structure by both laws, and with half of its modes and without its ends
+   subroutine solve_structures(case, models)
+      !> A validated case
+      type(case_t), intent(in) :: case
+      !> The combinations
+      type(model_t), allocatable, intent(out) :: models(:)
+
+      character(len=*), parameter :: laws(2) = [character(len=9) :: 'boltzmann', 'receding']
+      type(model_t) :: all(4)
+      character(len=:), allocatable :: body, law, pair
+      logical :: exists
+      integer :: i, n
+
+      call case%get('contact', 'law', law)
+      call case%get('contact', 'pair', pair)
+      call case%get('target', 'body', body)
+      n = 0
+      do i = 1, size(laws)
+         n = n + 1
+         all(n) = model_t('none', laws(i), pair, law == laws(i), label='structure')
+         call solve_model(case, all(n), exists)
+      end do
+      if (.not. differ(all(1)%outcome, all(2)%outcome)) then
+         if (all(2)%given) all(1) = all(2)
+         n = 1
+      end if
+      if (body /= 'block') then
+         n = n + 1
+         all(n) = model_t('none', law, pair, label='half_modes', share=0.5_wp)
+         call solve_model(case, all(n), exists)
+         if (.not. exists) n = n - 1
+      end if
+      if (body == 'block' .or. body == 'plate' .or. body == 'rod') then
+         n = n + 1
+         all(n) = model_t('none', law, pair, label='infinite', is_infinite=.true.)
+         call solve_model(case, all(n), exists)
+         if (.not. exists) n = n - 1
+      end if
+      allocate (models, source=all(:n))
+   end subroutine solve_structures
+
+   !> Remove the ends of a structure: a plate without edges, a rod without an end, which is a
+   !> dashpot, and a block that does not move
+   subroutine remove_ends(inputs, error)
+      type(inputs_t), intent(inout) :: inputs
+      !> Why that cannot be; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      ! mass of what moves with the dashpot, over that of the sphere
+      real(wp), parameter :: light = 1.0e-6_wp
+      class(material_t), allocatable :: material
+
+      associate (target => inputs%target)
+         select case (target%body)
+         case (target_plate)
+            if (inputs%item(of_target) /= inputs%item(of_plate)) then
+               call raise(error, error_input, 'the plate is not of the material of its surface')
+               return
+            end if
+            inputs%half_thickness = 0.5_wp*inputs%target_thickness()
+            inputs%waves = waves_hereditary
+            target%body = target_none
+         case (target_rod)
+            call new_material(material, inputs%material(of_target), error)
+            if (allocated(error)) return
+            if (.not. material%elastic()) then
+               call raise(error, error_input, 'a rod that relaxes is no dashpot')
+               return
+            end if
+            target%body = target_block
+            target%damping = 0.25_wp*pi*target%diameter**2*sqrt(material%density() &
+               *material%glassy())
+            target%mass = light*inputs%striking_mass(material%density())
+            target%stiffness = 0.0_wp
+         case default
+            target%body = target_none
+         end select
+      end associate
+   end subroutine remove_ends
 
    !> Whether two outcomes differ in restitution by more than their errors, or only one has any. One
    !> of contact and plate solved as one has that of the sphere only
@@ -138,9 +231,11 @@ contains
          inputs%settings%scheme = 'product'
          inputs%settings%ghost = .false.
          if (model%is_half_space) inputs%half_thickness = 0.0_wp
+         inputs%target%share = model%share
+         if (model%is_infinite) call remove_ends(inputs, error)
          ! an accuracy for internal variables may be out of reach of the coupled contact
          if (model%waves == 'body') inputs%settings%accuracy = 0.0_wp
-         call problem%build(inputs, error)
+         if (.not. allocated(error)) call problem%build(inputs, error)
          if (allocated(error)) then
             call forget_choices(error)
             call explain(case, error)
@@ -155,7 +250,26 @@ contains
       end if
    end subroutine solve_model
 
-   !> Solve the impact of a case with the exact mechanics
+   !> Whether law and pair of a structure change nothing: they are exact, or the contact is elastic
+   function has_exact_contact(case) result(yes)
+      type(case_t), intent(in) :: case
+      logical :: yes
+
+      character(len=*), parameter :: bodies(2) = ['sphere', 'plate ']
+      character(len=:), allocatable :: law, pair
+      logical :: is_elastic(2)
+      integer :: i
+
+      call case%get('contact', 'law', law)
+      call case%get('contact', 'pair', pair)
+      do i = 1, size(bodies)
+         is_elastic(i) = any(case%model(find_group('material'), &
+            case%material_of(trim(bodies(i)))) == [character(len=7) :: 'rigid', 'elastic'])
+      end do
+      yes = all(is_elastic) .or. law == 'receding' .and. (pair == 'series' .or. any(is_elastic))
+   end function has_exact_contact
+
+   !> Solve the impact of a case with the exact mechanics; with a structure only the contact is
    subroutine solve_exact(case, outcome, exact, is_shown)
       type(case_t), intent(in) :: case
       type(outcome_t), intent(in) :: outcome
@@ -171,7 +285,12 @@ contains
       is_shown = .false.
       if (waves == 'body' .and. outcome%is_coupled()) return
       exact = model_t(waves, 'receding', 'series')
-      if (.not. case%has_second_sphere()) exact%waves = 'body'
+      if (case%count('target') > 0) then
+         exact%outcome = outcome
+         if (has_exact_contact(case)) return
+      else if (.not. case%has_second_sphere()) then
+         exact%waves = 'body'
+      end if
       call solve_model(case, exact, is_valid)
       if (.not. is_valid .and. waves == 'none' .and. .not. case%has_thickness()) then
          ! a half space without density has no waves

@@ -242,6 +242,9 @@ def export_pair(
 
 def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.Dataset:
     """Results at the velocities and between them, every second one."""
+    if case["target.body"]:
+        raise InputError(f"{case.name}: found &target, expected a case without: a law of two "
+                         "bodies has no structure behind one")  # fmt: skip
     velocity = np.empty(2 * len(given) - 1)
     velocity[::2], velocity[1::2] = given, np.sqrt(given[1:] * given[:-1])
     with warnings.catch_warnings(), unwarned(ValidityWarning):

@@ -164,6 +164,9 @@ def mixture(
                          "group") from None  # fmt: skip
     if not known:
         raise InputError("expected one type of beads or more")
+    if "target" in groups:
+        raise InputError("found the group target, expected none: the bodies of a mixture have no "
+                         "structure behind them")  # fmt: skip
     bodies = list(enumerate([*known, *flat], 1))
     couples = [two for two in itertools.combinations_with_replacement(bodies, 2)
                if two[0][0] <= len(known)]  # fmt: skip

@@ -705,7 +705,8 @@ def _arrays(data: pd.DataFrame) -> dict[str, Floats]:
 def materials_of(addresses: Sequence[str]) -> list[str]:
     """Names of the materials that addresses belong to."""
     names = dict.fromkeys(address.rpartition(".")[0] for address in addresses)
-    return [name for name in names if name not in ("impact", "sphere", "plate", "contact")]
+    groups = ("impact", "sphere", "plate", "target", "contact")
+    return [name for name in names if name not in groups]
 
 
 def gravity_of(case: Case) -> float:

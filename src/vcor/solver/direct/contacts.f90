@@ -439,7 +439,10 @@ contains
       end do
       back = (1.0_wp - x)*run%dt
       trajectory%contacts = trajectory%contacts + 1
-      if (trajectory%contacts == 1) trajectory%first_end = run%t - back
+      if (trajectory%contacts == 1) then
+         trajectory%first_end = run%t - back
+         trajectory%first_velocity = run%sphere_velocity(impact) - impact%gravity*back
+      end if
       modes = run%modes%state()
       trajectory%rigid_velocity = vibration%rigid_velocity(modes)
       trajectory%structure_energy = unset

@@ -12,7 +12,8 @@
 module vcor_solver_ive_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_indentation, col_plate_velocity, col_time, &
+   use vcor_impact_trajectory, only : col_indentation, col_plate_velocity, &
+      col_sphere_velocity, col_time, &
       contact_separated, refuse_growth, trajectory_t
    use vcor_kinds, only : finest_accuracy, unset, wp
    use vcor_numeric_radau_dense, only : width
@@ -129,6 +130,7 @@ contains
       associate (vibration => motion%sums%vibration, modes => motion%start%modes, &
                  last => trajectory%state(:, trajectory%last))
          trajectory%first_end = last(col_time)
+         trajectory%first_velocity = last(col_sphere_velocity)
          w = last(col_indentation)
          if (.not. motion%recedes) w = motion%impact%law%u(w)
          call comes_back(motion%impact, motion%sums%contact, vibration, modes, last, w, &

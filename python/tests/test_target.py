@@ -1,0 +1,84 @@
+"""Struck structures from Python: files of modes in copies, sweeps, identification."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import vcor
+
+STEEL = {"name": "steel", "model": "elastic", "modulus": 2.1e11, "density": 7850.0,
+         "poisson_ratio": 0.3}  # fmt: skip
+MODES = "frequency [Hz],damping_ratio,modal_mass [kg]\n1200.0,0.02,0.03\n3400.0,0.02,0.04\n"
+
+
+def on(target):
+    """A steel ball at 1 m/s on a structure."""
+    return vcor.Case({"impact": {"velocity": 1.0}, "sphere": {"radius": 0.005, "material": "steel"},
+                      "plate": {"material": "steel"}, "target": target,
+                      "material": [STEEL]})  # fmt: skip
+
+
+def test_a_block_and_no_block():
+    """Newton's impact of two masses; the group can be set key by key."""
+    mass = 7850 * 4 / 3 * math.pi * 0.005**3
+    found = on({"body": "block", "mass": 0.05}).run()
+    assert float(found.cor_sphere) == pytest.approx((0.05 - mass) / (0.05 + mass), abs=1e-8)
+    assert int(found.contacts) == 1
+    case = vcor.Case({"impact": {"velocity": 1.0}, "sphere": {"radius": 0.005, "material": "steel"},
+                      "plate": {"material": "steel", "waves": "none"},
+                      "material": [STEEL]})  # fmt: skip
+    assert float(case.run().structure_energy) == 0
+    case["target.body"] = "block"
+    case["target.mass"] = 0.05
+    assert float(case.run().cor_sphere) == float(found.cor_sphere)
+
+
+@pytest.mark.filterwarnings("ignore::vcor.ValidityWarning")
+def test_the_file_of_modes_stays_with_the_case(tmp_path):
+    """Copies, pickles and saved cases read the same file; another file in its place is refused."""
+    (tmp_path / "modes.csv").write_text(MODES, encoding="utf-8")
+    text = str(on({"body": "modes", "file": "modes.csv"}))
+    (tmp_path / "case.nml").write_text(text, encoding="utf-8")
+    case = vcor.read(tmp_path / "case.nml")
+    e = float(case.run().cor_sphere)
+    assert float(case.copy().run().cor_sphere) == e
+    dumped = pickle.dumps(case)
+    assert float(pickle.loads(dumped).run().cor_sphere) == e
+    (tmp_path / "elsewhere").mkdir()
+    case.save(tmp_path / "elsewhere" / "case.nml")
+    assert float(vcor.read(tmp_path / "elsewhere" / "case.nml").run().cor_sphere) == e
+    (tmp_path / "modes.csv").write_text(MODES.replace("1200", "1300"), encoding="utf-8")
+    with pytest.raises(vcor.InputError, match=r"modes\.csv"):
+        pickle.loads(dumped)
+
+
+def test_a_sweep_over_the_structure():
+    """Points are the single impacts."""
+    case = on({"body": "block", "mass": 0.05, "stiffness": 1e6, "damping": 5.0})
+    found = case.sweep({"target.mass": [0.02, 0.05], "target.stiffness": [1e6, 1e7]})
+    assert found.cor_sphere.shape == (2, 2)
+    assert float(found.cor_sphere[1, 0]) == pytest.approx(float(case.run().cor_sphere), abs=1e-9)
+    assert set(np.unique(found.contacts)) == {1}
+
+
+def test_identification_of_an_anvil():
+    """Stiffness and damping of an anvil from the rebound of balls of two sizes."""
+    case = on({"body": "block", "mass": 0.02, "stiffness": 2e7, "damping": 40.0})
+    data = {"radius": [0.003, 0.006, 0.012], "velocity": [0.5, 0.5, 0.5]}
+    rows = [_at(case, r, v) for r, v in zip(*data.values(), strict=True)]
+    data["cor_sphere"] = [float(row.cor_sphere) for row in rows]
+    data["contact_time"] = [float(row.contact_time) for row in rows]
+    start = on({"body": "block", "mass": 0.02, "stiffness": 3e7, "damping": 60.0})
+    found = vcor.identify(start, data, ["target.stiffness", "target.damping"])
+    values = {one.address: one.value for one in found.estimates}
+    assert values["target.stiffness"] == pytest.approx(2e7, rel=1e-3)
+    assert values["target.damping"] == pytest.approx(40.0, rel=1e-3)
+
+
+def _at(case, radius, velocity):
+    """The impact of a ball of this radius."""
+    one = case.copy()
+    one["sphere.radius"], one["impact.velocity"] = radius, velocity
+    return one.run()

@@ -1,0 +1,281 @@
+"""Impacts on structures: numbers, refusals, files of modes, sweeps, what the screen says."""
+
+import csv
+import json
+
+import h5py
+import pytest
+from program import INPUT, NUMERICAL, SUCCESS
+
+STEEL = "name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3, density = 7850"
+GLASS = "name = 'glass', model = 'elastic', modulus = 70e9, poisson_ratio = 0.22, density = 2500"
+RUBBER = "name = 'rubber', model = 'sls', glassy_modulus = 15e6, alpha = 300, beta = 1200, poisson_ratio = 0.5, density = 1100"
+BLOCK = "body = 'block', mass = 0.05"
+CANTILEVER = "body = 'beam', support = 'cantilever', length = 0.15, width = 0.02, damping_ratio = 0.02"
+PANEL = "body = 'plate', support = 'supported', length = 0.06, width = 0.045"
+BAR = "body = 'rod', support = 'free', length = 0.3, diameter = 0.02"
+LIST = "body = 'modes', file = 'modes.csv'"
+HEAD = "frequency [Hz],damping_ratio,modal_mass [kg]\n"
+MODES = HEAD + "1200.0,0.02,0.03\n3400.0,0.02,0.04\n"
+# A slow mode that the ball leaves before it comes back
+SLOW = HEAD + "20.0,0.02,0.4\n"
+
+
+def case(target, plate="", impact="velocity = 1.0", more="", ball="steel", face="steel"):
+    """A steel ball on a structure whose surface is of steel."""
+    return f"""&impact {impact} /
+&sphere radius = 0.005, material = '{ball}' /
+&plate material = '{face}'{plate} /
+&target {target} /
+&material {STEEL} /
+&material {GLASS} /
+&material {RUBBER} /
+{more}"""
+
+
+def numbers(vcor, text, names, *words):
+    """Some columns of a case."""
+    vcor.write(text)
+    done = vcor("run", "case.nml", "--print", ",".join(names), *words)
+    assert done.code == SUCCESS, done.err
+    return [float(word) for word in done.out.split()]
+
+
+def refused(vcor, text, *words):
+    """The line with which a case is refused."""
+    vcor.write(text)
+    done = vcor("run", "case.nml", *words)
+    assert (done.code, done.out) == (INPUT, "")
+    assert done.err.count("\n") == 1
+    return done.err
+
+
+def test_free_block(vcor):
+    """Newton's impact of two masses, whatever the contact is, if it is elastic."""
+    names = ["cor_sphere", "cor", "contacts", "last_separation", "contact_time", "structure_energy", "initial_energy"]
+    mass = 7850 * 4 / 3 * 3.141592653589793 * 0.005**3
+    e, relative, contacts, last, time, left, before = numbers(vcor, case(BLOCK), names)
+    assert e == pytest.approx((0.05 - mass) / (0.05 + mass), abs=1e-8)
+    assert relative == pytest.approx(1, abs=1e-8)
+    assert (contacts, last) == (1, time)
+    assert left == pytest.approx(before * (1 - e**2), rel=1e-7)
+
+
+def test_without_a_structure(vcor):
+    """One contact, whose end is the last separation, and no energy in a structure."""
+    names = ["contacts", "last_separation", "contact_time", "structure_energy", "highest_mode"]
+    text = case("").replace("&target  /\n", "").replace("material = 'steel' /\n&mat", "material = 'steel', waves = 'none' /\n&mat")
+    contacts, last, time, left, highest = numbers(vcor, text, names)
+    assert (contacts, last, left) == (1, time, 0)
+    assert highest != highest
+
+
+def test_cantilever_is_struck_again(vcor):
+    """The impact on a cantilever of tests/reference/target.txt: 11 contacts; the first separation says nothing."""
+    text = case(CANTILEVER, ", thickness = 0.003")
+    vcor.write(text)
+    out = vcor.succeeds("run", "case.nml")
+    assert "the first separation, with cor_sphere -3.3E-01, is not the end" in out
+    assert "11 contacts" in out
+    assert "caution: contacts 11.0" in out
+    assert "target beam cantilever" in out
+    summary = list(csv.DictReader(line for line in open(vcor.folder / "case_summary.csv") if line[0] != "#"))[0]
+    assert float(summary["cor_sphere"]) == pytest.approx(0.25944601616545, abs=1e-6)
+    assert float(summary["last_separation"]) == pytest.approx(0.0039087447540, rel=1e-6)
+    assert float(summary["structure_energy"]) == pytest.approx(0.000403408708, rel=1e-6)
+    assert summary["validity_cause"] == "contacts"
+    rows = list(csv.DictReader(line for line in open(vcor.folder / "case.csv") if line[0] != "#"))
+    force = [float(row["force"]) for row in rows]
+    assert float(rows[-1]["time"]) == pytest.approx(0.0039087447540, rel=1e-6)
+    # the force ends and begins again
+    assert sum(a > 0 >= b for a, b in zip(force, force[1:], strict=False)) >= 5
+
+
+def test_infinite_limits(vcor):
+    """A wide plate is an infinite one, and a long rod a dashpot rho c A."""
+    wide = PANEL.replace("0.06", "0.5").replace("0.045", "0.5")
+    names = ["cor_sphere"]
+    [finite] = numbers(vcor, case(wide, ", thickness = 0.003"), names)
+    text = case("", ", thickness = 0.003, waves = 'constant'").replace("&target  /\n", "")
+    assert finite == pytest.approx(numbers(vcor, text, names)[0], abs=1e-6)
+    [rod] = numbers(vcor, case(BAR.replace("0.3", "2.0")), names)
+    drag = 7850 * (210e9 / 7850) ** 0.5 * 3.141592653589793 / 4 * 0.02**2
+    assert rod == pytest.approx(numbers(vcor, case(f"body = 'block', mass = 1e-9, damping = {drag!r}"), names)[0], abs=1e-5)
+
+
+REFUSED = {
+    "a key of another body": (BLOCK + ", length = 0.1", "", "does not belong to body 'block'"),
+    "no body": ("mass = 0.1", "", "key 'body' is missing in &target"),
+    "no mass": ("body = 'block'", "", "key 'mass' is missing"),
+    "a mass of zero": ("body = 'block', mass = 0.0", "", "expected a number > 0 [kg]"),
+    "a negative spring": (BLOCK + ", stiffness = -1.0", "", "expected a number >= 0 [N/m]"),
+    "a clamped plate": (PANEL.replace("supported", "clamped"), ", thickness = 0.003", "give its modes from finite elements"),
+    "a free plate": (PANEL.replace("supported", "free"), ", thickness = 0.003", "expected support = 'supported' of a plate"),
+    "a rod on supports": (BAR.replace("free", "supported"), "", "of the far end of a rod"),
+    "beyond the end": (CANTILEVER + ", position = 0.16", ", thickness = 0.003", "found position = 0.16 and length = 0.15"),
+    "beside the plate": (PANEL + ", position = 0.03, 0.05", ", thickness = 0.003", "0 <= position <= width"),
+    "on a clamp": (CANTILEVER + ", position = 0.0", ", thickness = 0.003", "the impact is on a support"),
+    "on an edge": (PANEL + ", position = 0.03, 0.0", ", thickness = 0.003", "the impact is on a support"),
+    "one number for a plate": (PANEL + ", position = 0.03", ", thickness = 0.003", "expected two numbers for a plate"),
+    "two numbers for a beam": (CANTILEVER + ", position = 0.1, 0.1", ", thickness = 0.003", "expected one number for a beam"),
+    "no thickness": (PANEL, "", "needs its thickness"),
+    "a ratio of 1": (CANTILEVER.replace("0.02", "1.0").replace("width = 1.0", "width = 0.02"), ", thickness = 0.003", "[0, 1)"),
+    "a layer without a body": (PANEL, ", thickness = 0.003, base = 'bonded'", "key 'material' is missing in &target"),
+    "a layer as thick as the body": (PANEL + ", material = 'steel'", ", thickness = 0.003, base = 'bonded'", "its thickness"),
+    "no such material": (PANEL + ", material = 'brass'", ", thickness = 0.003", "there is no material 'brass' for &target"),
+    "an extent": (BLOCK, ", extent = 0.1", "found extent with &target"),
+    "waves of a thin plate": (BLOCK, ", thickness = 0.003, waves = 'hereditary'", "expected waves = 'none'"),
+    "waves in a body": (BLOCK, ", waves = 'body'", "expected waves = 'none'"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused(vcor, name):
+    target, plate, words = REFUSED[name]
+    assert words in refused(vcor, case(target, plate))
+
+
+SETTINGS = {
+    "solver.method=coupled": "by method = 'ive' or 'direct'",
+    "solver.scheme=adams_bashforth": "'direct' with scheme = 'product'",
+    "solver.volterra_order=2": "expected volterra_order = 1",
+    "solver.continue_after_separation=.true.": "continuing has no meaning",
+    "impact.gravity=9.81": "falls with the sphere",
+    "target.length=0.1": "does not belong to body 'block'",
+}
+
+
+@pytest.mark.parametrize("setting", SETTINGS)
+def test_settings_refused(vcor, setting):
+    assert SETTINGS[setting] in refused(vcor, case(BLOCK), "--set", setting)
+
+
+FILES = {
+    "a unit of kHz": (MODES.replace("[Hz]", "[kHz]"), "'kHz' as unit of frequency, expected Hz"),
+    "a unit of rad/s": (MODES.replace("[Hz]", "[rad/s]"), "'rad/s' as unit of frequency, expected Hz"),
+    "no unit": (MODES.replace(" [Hz]", ""), "no unit of frequency, expected [Hz]"),
+    "grams": (MODES.replace("[kg]", "[g]"), "'g' as unit of modal_mass, expected kg"),
+    "no names": (MODES.replace(HEAD, ""), "numbers without names"),
+    "another name": (MODES.replace("modal_mass", "weight"), "found 'weight'"),
+    "two frequencies": (MODES.replace("damping_ratio", "frequency [Hz]"), "found 'frequency' after 'frequency'"),
+    "two columns": ("frequency [Hz],modal_mass [kg]\n1200,0.03\n", "found 2 columns, expected 3"),
+    "no modes": (HEAD, "found 0 points, expected 1 at least"),
+    "a mass of zero": (MODES.replace("0.04", "0.0"), "expected a modal mass > 0"),
+    "a negative mass": (MODES.replace("0.04", "-0.04"), "expected a modal mass > 0"),
+    "a negative frequency": (MODES.replace("1200.0", "-1200.0"), "expected a frequency >= 0"),
+    "a ratio above 1": (MODES.replace("0.02,0.04", "1.2,0.04"), "expected a damping ratio in [0, 1)"),
+    "a text": (MODES.replace("1200.0", "first"), "expected a number"),
+    "three rigid ones": (HEAD + 3 * "0.0,0.0,0.1\n", "expected at most two"),
+    "nodes only": (HEAD.replace("modal_mass [kg]", "mode_shape [kg^-0.5]") + "1200,0.01,0.0\n", "on a node of every mode"),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files_refused(vcor, name):
+    text, words = FILES[name]
+    (vcor.folder / "modes.csv").write_text(text, encoding="utf-8")
+    line = refused(vcor, case(LIST))
+    assert words in line
+    assert "modes.csv" in line
+
+
+def test_shapes_are_masses(vcor):
+    """A mode shape of 1/sqrt(m) is a modal mass of m; the order of the columns is free."""
+    (vcor.folder / "modes.csv").write_text(MODES, encoding="utf-8")
+    names = ["cor_sphere", "highest_mode", "contact_time"]
+    e, highest, time = numbers(vcor, case(LIST), names)
+    assert highest == pytest.approx(2 * 3400 * time, rel=1e-12)
+    text = "mode_shape [kg^-0.5],frequency [Hz],damping_ratio [1]\n"
+    text += f"{0.03**-0.5!r},1200,0.02\n{-(0.04**-0.5)!r},3400,0.02\n0.0,5000.0,0.02\n"
+    (vcor.folder / "modes.csv").write_text(text, encoding="utf-8")
+    assert numbers(vcor, case(LIST), names)[0] == pytest.approx(e, abs=1e-10)
+    done = vcor("run", "case.nml", "--print", "cor_sphere")
+    assert "highest_mode" in done.err
+    [with_rest] = numbers(vcor, case(LIST + ", residual_compliance = 1e-9"), ["highest_mode"])
+    assert with_rest != with_rest
+
+
+def test_no_file(vcor):
+    vcor.write(case(LIST))
+    done = vcor("run", "case.nml")
+    assert done.code == 4
+    assert "modes.csv" in done.err
+
+
+def test_sweep(vcor):
+    """Points of a sweep over the structure, on any number of threads, are the single impacts."""
+    sweep = "&sweep parameter = 'target.mass', values = 0.02, 0.05 /\n"
+    sweep += "&sweep parameter = 'impact.velocity', values = 0.5, 1.0, 2.0 /\n"
+    vcor.write(case(BLOCK + ", stiffness = 1e6, damping = 5.0", more=sweep))
+    for threads in (1, 2):
+        assert vcor("run", "case.nml", "--threads", threads, "--output", f"by{threads}").code == SUCCESS
+    one, two = ((vcor.folder / f"by{n}" / "case_summary.csv").read_text() for n in (1, 2))
+    assert one == two
+    rows = list(csv.DictReader(line for line in one.splitlines() if line[0] != "#"))
+    [single] = numbers(vcor, case(BLOCK + ", stiffness = 1e6, damping = 5.0"), ["cor_sphere"])
+    assert float(rows[4]["cor_sphere"]) == pytest.approx(single, abs=1e-9)
+    with h5py.File(vcor.folder / "by1" / "case.h5") as file:
+        assert file["summary/contacts"].shape == (2, 3)
+        assert "&target" in file.attrs["case"]
+
+
+def test_sweep_of_a_place(vcor):
+    """Points where the structure does not move are invalid, the others not."""
+    sweep = "&sweep parameter = 'target.position(1)', values = 0.0, 0.1 /\n"
+    vcor.write(case(CANTILEVER + ", position = 0.1", ", thickness = 0.003", more=sweep))
+    assert vcor("run", "case.nml").code == NUMERICAL
+    rows = list(csv.DictReader(line for line in open(vcor.folder / "case_summary.csv") if line[0] != "#"))
+    assert [row["status"] for row in rows] == ["invalid", "separated"]
+
+
+def test_completed_case(vcor):
+    """A completed case has the structure, and a case without one has no &target; both can be read again."""
+    for text in (case(CANTILEVER, ", thickness = 0.003"), case("").replace("&target  /\n", "").replace("'steel' /\n&mat", "'steel', waves = 'none' /\n&mat")):
+        vcor.write(text)
+        completed = vcor("check", "case.nml").out
+        assert ("&target" in completed) == ("&target" in text)
+        (vcor.folder / "again.nml").write_text(completed, encoding="utf-8")
+        assert vcor("check", "again.nml").code == SUCCESS
+    vcor.write(case(BLOCK))
+    assert "waves = 'none'" in vcor("check", "case.nml").out
+
+
+def test_exact_mechanics(vcor):
+    """With a structure it recedes, in series, without waves."""
+    vcor.write(case(BLOCK, more="&contact mechanics = 'exact' /\n", face="rubber", ball="steel"))
+    done = vcor("check", "case.nml")
+    assert done.code == SUCCESS
+    for words in ("law = 'receding'", "pair = 'series'", "waves = 'none'"):
+        assert words in done.out
+    vcor.write(case(CANTILEVER + ", material = 'steel', thickness = 0.003", face="rubber"))
+    out = vcor("run", "case.nml").out
+    assert "with receding contact" in out
+    assert "exact" not in out
+
+
+def test_verify(vcor):
+    """Both methods on the first contact, half of the modes, no edges."""
+    vcor.write(case(PANEL, ", thickness = 0.003"))
+    done = vcor("verify", "case.nml")
+    assert done.code == SUCCESS, done.out
+    for words in ("verified:", "first contact", "half_modes", "infinite"):
+        assert words in done.out
+
+
+def test_gravity(vcor):
+    """With a weight the ball rests on a slow structure, or leaves a stiff one."""
+    impact = "velocity = 0.05, gravity = 9.81"
+    names = ["cor_sphere", "contacts"]
+    e, contacts = numbers(vcor, case("body = 'block', mass = 5.0, stiffness = 1e8, damping = 1e3", impact=impact), names)
+    assert 0.9 < e < 1 and contacts == 1
+    (vcor.folder / "modes.csv").write_text(SLOW, encoding="utf-8")
+    vcor.write(case(LIST, impact="velocity = 0.01, gravity = 9.81"))
+    done = vcor("run", "case.nml")
+    assert done.code in (SUCCESS, NUMERICAL)
+
+
+def test_help(vcor):
+    help_text = vcor.succeeds("help", "target.body")
+    assert "one of plate, beam, rod, block," in help_text
+    keys = [one["name"] for one in json.loads(vcor("help", "--json").out)["summary"]]
+    assert {"contacts", "last_separation", "structure_energy", "highest_mode"} <= set(keys)
