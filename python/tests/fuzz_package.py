@@ -144,8 +144,8 @@ IMPACTS = [
 def impacts(chance, folder):
     """Damaged tables of impacts and records, as identify reads them: finite data."""
     path = write(folder / "data.csv", damaged(chance.choice(IMPACTS), chance, IMPACTS))
-    block = observations(vcor.Case(SLS), path, ["rubber.beta"])
-    ensure(np.isfinite(block.value).all() and block.taken, "a datum is no number")
+    for block in observations(vcor.Case(SLS), path, ["rubber.beta"]):
+        ensure(np.isfinite(block.value).all() and block.taken, "a datum is no number")
 
 
 TABLE = "time [s],relaxation_modulus [Pa]\n1e-6,9e7\n1e-5,6e7\n1e-4,3e7\n1e-3,1.5e7\n1e-2,8e6\n"
