@@ -64,7 +64,7 @@ def test_ranges_have_the_units_of_users():
         (["--vary", "impact.velocity=3m/s:1m/s"], 2, ["found 3 to 1", "smaller to the larger"]),
         (["--vary", "impact.velocity=3m/s:3m/s"], 2, ["found 3 to 3"]),
         (["--vary", "impact.velocity=1e999m/s:2m/s"], 2, ["found inf to 2"]),
-        (["--vary", "impact.velocity=1:3"], 2, ["found no unit", "m/s"]),
+        (["--vary", "impact.velocity=1mm/s:3"], 2, ["found two units", "m/s"]),
         (["--vary", "impact.velocity=1kg:3kg"], 2, ["unknown unit 'kg'"]),
         (["--vary", "impact.velocity=1m/s:3km/h"], 2, ["two units"]),
         (["--vary", "impact.speed=1m/s:3m/s"], 2, ["unknown key 'speed'"]),

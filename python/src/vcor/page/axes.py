@@ -66,7 +66,7 @@ def axes_of(case: Case, vary: Mapping[str, str]) -> list[Axis]:
         The case that has the addresses.
     vary
         Range of one to three addresses: two numbers with their unit and a colon between them. The
-        unit of the first number may be left out if that of the second one is given.
+        unit of the first number may be left out; without any the numbers are in SI units.
 
     Raises
     ------
@@ -98,12 +98,9 @@ def _axis(case: Case, address: str, text: str) -> Axis:
         raise UsageError(f"{address}={text}: expected a range of two numbers, such as {such}")
     numbers = [float(re.sub("[dD]", "e", end[1])) for end in ends if end]
     units = [end[2] for end in ends if end]
-    unit = units[1]
+    unit = units[1] or ("" if units[0] or si == "1" else si)
     if units[0] not in ("", unit):
         raise UsageError(f"{address}={text}: found two units, expected one, such as {such}")
-    if not unit and si != "1":
-        raise UsageError(f"{address}={text}: found no unit, expected one such as {examples(si)}: "
-                         f"{such}")  # fmt: skip
     sizes = size(unit or "1", si)
     if sizes is None:
         raise UsageError(f"{address}={text}: unknown unit '{unit}', expected one such as "
