@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
 import pytest
 from places import LIMIT, ROOT
@@ -120,9 +121,44 @@ VALIDITY = re.compile(r"vcor: note: \S+: validity")
 VALIDITY_WARNING = re.compile(r"^\S+: ValidityWarning: .*\n  .*\n", re.MULTILINE)
 
 
+# A level below good: on a screen, as a value of --print or in a column of a table
+LEVEL = re.compile(r"(?:^|[\s,:])(caution|outside)(?=[\s,:]|$)", re.MULTILINE)
+
+
+def levels(folder, before, *printed):
+    """The levels below good that a block has printed, or written into tables of results since a time [ns]."""
+    found = {level for text in printed for level in LEVEL.findall(text)}
+    for path in folder.rglob("*.csv"):
+        if path.stat().st_mtime_ns < before:
+            continue
+        names, *rows = [line.split(",") for line in path.read_text("utf-8").splitlines() if line[:1] != "#"] or [[]]
+        if "validity" in names:
+            found |= {row[names.index("validity")] for row in rows} & {"caution", "outside"}
+    return found
+
+
+def words_on(block, page):
+    """What a page says about a block: its comments, and what follows up to the next heading or block of commands."""
+    comments = " ".join(re.findall(r"#.*", block))
+    return comments + re.split(r"^(?:#+ |```sh$)", page.split(block, 1)[1], maxsplit=1, flags=re.MULTILINE)[0]
+
+
+def test_levels_are_seen(tmp_path):
+    (tmp_path / "drop_summary.csv").write_text("# vcor\ncor,validity\n0.5,good\n0.4,caution\n")
+    assert levels(tmp_path, 0) == {"caution"}
+    assert levels(tmp_path, 2**63) == set()
+    for text in ("  validity: outside\n", "0.3,outside\n", "0.3 outside layer_strain", "note: validity outside: x"):
+        assert levels(tmp_path, 2**63, text) == {"outside"}
+    assert levels(tmp_path, 2**63, "validity: good\n", "caution_x") == set()
+    page = "```sh\nvcor a # one\n```\nhere\n```sh\nvcor b\n```\noutside\n"
+    assert "outside" not in words_on("vcor a # one\n", page) and "here" in words_on("vcor a # one\n", page)
+    assert "outside" in words_on("vcor b\n", page)
+
+
 def shell(folder, text, page=""):
     """Run a block as it stands; what it prints. On stderr is nothing but what the page shows, and
-    how valid bare numbers are."""
+    how valid bare numbers are; the page has a word on results that are not good."""
+    before = time.time_ns()
     env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
     done = subprocess.run(
         ["bash", "-euc", text],
@@ -136,6 +172,11 @@ def shell(folder, text, page=""):
     stderr = VALIDITY_WARNING.sub("", done.stderr)
     errors = [line for line in stderr.splitlines() if line not in page and not VALIDITY.match(line)]
     assert (done.returncode, errors) == (0, []), text
+    # a page that is made from the help has the help's examples as they are
+    if text in page and not page.startswith("<!-- Made by"):
+        notes = "\n".join(line for line in done.stderr.splitlines() if VALIDITY.match(line))
+        found = levels(folder, before, done.stdout, notes)
+        assert not found or re.search(r"caution|outside|validity", words_on(text, page)), (found, text)
     return done.stdout
 
 
@@ -192,7 +233,7 @@ def test_the_walk_from_dma_to_restitution(folder):
     rows = [line for line in (folder / "walk/drop_summary.csv").read_text().splitlines() if line[:1] != "#"]
     names, *rows = [row.split(",") for row in rows]
     cor = [float(row[names.index("cor")]) for row in rows]
-    shown = re.search(r"with ([\d.]+) at 10 °C; the coefficient falls to ([\d.]+) at 60 °C", text_of(page))
+    shown = re.search(r"with ([\d.]+) at 10 °C; the coefficient rises to ([\d.]+) at 60 °C", text_of(page))
     assert [f"{cor[0]:.3f}", f"{cor[-1]:.2f}"] == [shown[1], shown[2]]
     head = blocks(page, "sh")[0]
     assert shell(folder, head) in text_of(page)
@@ -213,6 +254,9 @@ def test_the_boxes_of_the_readme(folder):
     assert len(boxes) == 2 and "scripts/run.sh" in install
     for block in (*boxes, first):
         assert block in recipes
+    for block in boxes:
+        shown = re.search(r"caution|outside", words_on(block, recipes))
+        assert not shown or re.search(r"caution|outside|good", words_on(block, text_of("README.md"))), block
     (pair,) = re.findall(r"^pair_coeff .*$", recipes, re.MULTILINE)
     shown = re.search(r"# \.\.\. (\S+) (\S+) \.\.\.$", first, re.MULTILINE).groups()
     assert shown == tuple(f"{float(word):.4g}" for word in pair.split()[4:6])
