@@ -606,6 +606,77 @@ def test_the_command_takes_pairs_and_materials(tmp_path, monkeypatch, capsys):
     assert "glass.nml: a file with nothing but &material groups" in capsys.readouterr().err
 
 
+SIZES = "material, radius [mm]\nrubber, 2\nrubber, 3\nglass, 4\nglass, wall\n"
+
+
+@pytest.fixture
+def table_of_sizes(tmp_path, monkeypatch):
+    """Two files of materials, the first with a contact, in the working folder; run of a table."""
+    monkeypatch.chdir(tmp_path)
+    text = vcor.pair([RUBBER, GLASS], (0.003,)).text()
+    rubber, glass = (re.search(rf"(?ms)^&material\n   name = '{name}'.*?^/\n", text)[0]
+                     for name in ("rubber", "glass"))  # fmt: skip
+    Path("rubber.nml").write_text("&contact pair = 'series' /\n" + rubber)
+    Path("glass.nml").write_text(glass)
+
+    def run(table, *more):
+        Path("sizes.csv").write_text(table)
+        _command.call("export", ["rubber.nml", "glass.nml", "--mixture", "sizes.csv", "--for",
+                                 "lammps", "--velocities", "0.1:1:3", *more])  # fmt: skip
+
+    return run
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        SIZES,
+        "# beads\nDiameter (cm);Material\n0,4;rubber\n0,6;rubber\n\n0,8;glass\ninf;glass\n",
+        "material\tradius_m\tthickness [mm]\nrubber\t2e-3\t\nrubber\t3e-3\nglass\t4e-3\n"
+        "glass\twall\t\n",
+    ],
+)
+def test_the_command_makes_a_mixture_of_a_table(table_of_sizes, capsys, table):
+    """The shell gives what the package gives, for any layout of the table."""
+    table_of_sizes(table)
+    beads = [(RUBBER, 0.002), (RUBBER, 0.003), (GLASS, 0.004)]
+    cases = vcor.mixture(beads, [GLASS], contact={"pair": "series"})
+    assert capsys.readouterr().out == str(vcor.export(cases, "lammps", np.geomspace(0.1, 1, 3)))
+
+
+def test_walls_of_a_table_have_a_thickness(table_of_sizes, capsys):
+    table_of_sizes("material, radius [mm], thickness [mm]\nglass, 2,\nglass, wall, 5\n")
+    cases = vcor.mixture([(GLASS, 0.002)], [(GLASS, 0.005)], contact={"pair": "series"})
+    assert capsys.readouterr().out == str(vcor.export(cases, "lammps", np.geomspace(0.1, 1, 3)))
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("", "sizes.csv: found 0 lines"),
+        ("material\nglass\n", "sizes.csv:1: found one column"),
+        ("material, radius\nglass, 2\n", "found the column 'radius', expected its unit"),
+        ("material, radius [kg]\nglass, 2\n", "units are m, cm, mm"),
+        ("material, radus [mm]\nglass, 2\n", "did you mean 'radius'?"),
+        ("material, thickness [mm]\nglass, 2\n", "one of radius [mm] and diameter [mm]"),
+        ("material, radius [mm]\n\nglas, 2\n", "sizes.csv:3: found material 'glas'"),
+        ("material, radius [mm]\nglass, -2\n", "radius: found '-2', expected a number > 0 or wall"),
+        ("material, radius [mm]\nglass, nan\n", "found 'nan'"),
+        ("material, radius [mm]\nglass\n", "radius: found ''"),
+        ("material, radius [mm]\n, 2\n", "sizes.csv:2: found no material"),
+        ("material, radius [mm]\nglass, 2, 3\n", "found 3 cells, expected 2"),
+        ("material, radius [mm]\nglass, 2\nglass, 2.0\n", "for the second time"),
+        ("material, radius [mm]\nglass, wall\n", "found 1 walls, expected one type of beads"),
+        ("material, radius [mm], thickness [mm]\nglass, 2, 3\n", "a thickness of beads"),
+    ],
+)  # fmt: skip
+def test_tables_of_a_mixture_that_are_refused(table_of_sizes, capsys, table, words):
+    with pytest.raises(SystemExit) as caught:
+        table_of_sizes(table)
+    said = capsys.readouterr().err
+    assert caught.value.code == 3 and words in said and said.count("\n") == 1, said
+
+
 @other_programs
 def test_lammps_does_what_a_mixture_says(lammps, cases, tmp_path):
     found = vcor.export(cases, "lammps", VELOCITIES)

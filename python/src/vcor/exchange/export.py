@@ -18,6 +18,7 @@ from ..arguments import listed
 from ..case import Case, as_case, read_cases
 from .codes import MEANING, TARGETS, Export, export_pair
 from .mixture import Mixture, export_mixture
+from .sizes import cases_of
 
 Source = Case | str | os.PathLike[str]
 
@@ -80,8 +81,16 @@ def _parser() -> _command.Parser:
         "beads and walls. Prints it; with --output, writes it and a figure.",
     )
     add = parser.add_argument
-    add("case", metavar="CASE.nml", nargs="+",
-        help="case of a pair, or of all pairs of a mixture, and files of materials")  # fmt: skip
+    add(
+        "case",
+        metavar="CASE.nml",
+        nargs="+",
+        help="case of a pair, or of all pairs of a mixture, and files of materials; with "
+        "--mixture, files of materials, of which the first may have other groups of a case too",
+    )
+    add("--mixture", metavar="SIZES.csv",
+        help="make all pairs of a mixture from a table with the columns material and radius [mm] "
+        "or diameter [mm], of walls the word wall, and thickness [mm]")  # fmt: skip
     add("--for", metavar="PROGRAM", dest="target", required=True, type=str.lower,
         help=f"one of {', '.join(TARGETS)}")  # fmt: skip
     add("--velocities", metavar="A:B:N", required=True,
@@ -108,7 +117,9 @@ def _work(options: argparse.Namespace) -> None:
             f"--velocities {options.velocities}: expected A:B:N, N velocities from A up to B in "
             "m/s, such as 0.05:5:20"
         ) from None
-    found = export(read_cases(options.case), options.target, velocities, quantity=options.quantity,
+    cases = (read_cases(options.case) if options.mixture is None
+             else cases_of(options.mixture, options.case))  # fmt: skip
+    found = export(cases, options.target, velocities, quantity=options.quantity,
                    master=options.master, law=options.law, threads=options.threads)  # fmt: skip
     if options.output is None:
         sys.stdout.write(str(found))
