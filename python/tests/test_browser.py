@@ -198,7 +198,7 @@ def test_verdicts_and_where_there_is_no_number(opened, tables):
     found = dict.fromkeys(table.state.tolist())
     for k in found:
         node = int(np.flatnonzero(table.state == k)[0])
-        status, level = table.states[k]
+        status, level, _contacts = table.states[k]
         value = 0.2 * 40.0 ** (node / 32)
         shown.fill("#number-0", repr(min(max(value, 0.2), 8.0)))
         sentence = shown.inner_text("#verdict")

@@ -56,7 +56,7 @@ FIGURES = {
         f"{PRONY}: COR 0.2673, t₀ = 0.7964 ms",
     ],
     "map": [COR, VELOCITY, "sphere radius [mm]", "0.6", "0.7", "0.8", "0.9"],
-    "energy": ["energy radiated into the plate [J]", VELOCITY, "0.1", "0.01"],
+    "energy": ["energy given to the plate or structure", VELOCITY, "0.1", "0.01"],
     "fit": [*MODULI, "soft rubber data"],
     "validity": [COR, "plate half thickness [mm]", "measured"],
 }

@@ -29,8 +29,8 @@ SCRIPTS = {
 FEWER = ("POINTS, PART = 10_000_000, 100_000", "POINTS, PART = 400, 100")
 
 
-# One interpreter for the scripts of a page, each in a folder and with names of its own: half of their
-# time goes into imports. Those of a cluster have processes that import the script
+# One interpreter for the scripts of a page, each in a folder and with names of its own: half of
+# their time goes into imports. Those of a cluster have processes that import the script
 ALONE = ["distributed.md"]
 GROUPS = {}
 for _name in SCRIPTS:

@@ -197,7 +197,7 @@ def test_verdicts_and_points_without_a_result():
     (found,) = made.tables
     assert {one.category for one in heard} == {vcor.NoResultWarning}
     levels = [found.states[i] for i in dict.fromkeys(found.state.tolist())]
-    assert levels[:3] == [("separated", level) for level in ("good", "caution", "outside")]
+    assert levels[:3] == [("separated", level, "1") for level in ("good", "caution", "outside")]
     lost = np.isnan(found.cor)
     assert [found.states[i][1] for i in found.state[lost]] == ["none"] * lost.sum()
     assert f"{lost.sum()} of 33 points have no result" in str(made)
@@ -205,7 +205,7 @@ def test_verdicts_and_points_without_a_result():
 
 
 def test_a_change_of_a_whole_number_is_one_of_the_state(monkeypatch):
-    """As that of contacts with a structure would be; here the number of steps."""
+    """As that of contacts with a structure; here the number of steps."""
     monkeypatch.setattr(table, "_STATE", ("status", "validity", "steps"))
     made = page.make(SLS, {"plate.thickness": "1mm:100mm"}, points=17)
     (found,) = made.tables

@@ -38,7 +38,7 @@ _FRESH = 25, 200
 _GRAVITY = (size("gn", "m/s2") or (math.nan,))[0]
 #: Points of a cubic polynomial
 _CUBIC = 4
-#: Columns that make the state of a point, of those that the library has: nothing is interpolated
+#: Columns that make the state of a point: nothing is interpolated
 #: between two statuses, two levels of validity or two numbers of contacts
 _STATE = ("status", "validity", "contacts")
 
@@ -157,8 +157,7 @@ def solve(
     counts = (count or _count(len(axes), one / cores),) * len(axes)
     fresh = min(max(math.prod(counts) // 2, _FRESH[0]), _FRESH[1])
     _announce(f"{case.name}{f' with {name}' * bool(name)}", math.prod(counts) + fresh, one / cores)
-    columns = ["cor_sphere", "validity_cause"]
-    columns += [one for one in _STATE if one in _library.columns(0)]
+    columns = ["cor_sphere", "validity_cause", *_STATE]
     nodes = {axis.address: axis.si(axis.nodes(counts[0])) for axis in axes}
     with warnings.catch_warnings(record=True) as heard, unwarned(ValidityWarning):
         warnings.simplefilter("always")
@@ -203,7 +202,7 @@ def solve(
 
 def _states(data: Any) -> list[tuple[str, ...]]:
     """State of each point: texts that change where nothing may be interpolated."""
-    columns = [data[name].values.ravel() for name in _STATE if name in data]
+    columns = [data[name].values.ravel() for name in _STATE]
     return list(zip(*[column.astype(str).tolist() for column in columns], strict=True))
 
 
