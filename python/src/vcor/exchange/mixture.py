@@ -224,8 +224,8 @@ def _matrix(cases: Sequence[Case]) -> tuple[list[Body], dict[tuple[int, int], Ca
         for j, other in enumerate(bodies[i - 1 :], i):
             if (i, j) not in table and one.radius < math.inf:
                 raise InputError(f"found no case of '{one}' with '{other}', expected every pair of "
-                                 "the mixture; vcor export --mixture and vcor.mixture in Python "
-                                 "make them")  # fmt: skip
+                                 "the mixture; a table of sizes makes them all, and so does "
+                                 "vcor.mixture in Python")  # fmt: skip
     return bodies, dict(sorted(table.items()))
 
 

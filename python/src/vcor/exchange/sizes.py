@@ -152,7 +152,7 @@ def _case_of(files: Sequence[str]) -> Case:
         other = read(path)
         if any(other[f"{body}.material"] for body in ("sphere", "plate")):
             raise UsageError(f"{path}: found a case after the first file, expected files of "
-                             "materials: the bodies are those of --mixture")  # fmt: skip
+                             "materials: the bodies are those of the table of sizes")  # fmt: skip
         case.add(other)
     return case
 
@@ -187,7 +187,7 @@ def _groups(
                     if key not in _BODIES.get(found[1], ())}  # fmt: skip
             if found[1] == "sphere" and rest:
                 raise InputError(f"{case.name}: found sphere.{next(iter(rest))}, expected spheres "
-                                 "without it: the beads are those of --mixture")  # fmt: skip
+                                 "without it: the beads are those of the table")  # fmt: skip
             if rest and rest != {"waves": "none"}:
                 groups[found[1]] = rest
     return materials, groups
