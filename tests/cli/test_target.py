@@ -262,6 +262,28 @@ def test_verify(vcor):
         assert words in done.out
 
 
+UNDAMPED = {
+    "a plate": ("body = 'plate', support = 'supported', length = 0.05, width = 0.05", "velocity = 1.0"),
+    "a thick plate": ("body = 'plate', support = 'supported', length = 0.1, width = 0.07", "velocity = 0.1"),
+    "a small plate": ("body = 'plate', support = 'supported', length = 0.04, width = 0.05, thickness = 0.002", "velocity = 10.0"),
+    "a beam": ("body = 'beam', support = 'supported', length = 0.1, width = 0.02", "velocity = 1.0"),
+    "a cantilever": ("body = 'beam', support = 'cantilever', length = 0.15, width = 0.02", "velocity = 1.0"),
+}
+
+
+@pytest.mark.parametrize("law", ["boltzmann", "receding"])
+@pytest.mark.parametrize("name", UNDAMPED)
+def test_verify_undamped(vcor, name, law):
+    """Fast modes that ring from the first touch on are no disagreement of the methods."""
+    target, impact = UNDAMPED[name]
+    vcor.write(case(target, ", thickness = 0.003", impact=impact, more=f"&contact law = '{law}' /\n"))
+    done = vcor("verify", "case.nml")
+    assert done.code == SUCCESS, done.out
+    for line in done.out.splitlines():
+        if line.strip().startswith(("max_indentation ", "max_force ")) and line.split()[-1].isdigit():
+            assert int(line.split()[-1]) >= 5
+
+
 def test_gravity(vcor):
     """With a weight momentum is m (v + g t) at the end of an elastic contact, and bodies part as they met."""
     mass, g, v = 7850 * 4 / 3 * 3.141592653589793 * 0.005**3, 9.81, 0.01
