@@ -59,6 +59,7 @@ module vcor_impact_problem
       procedure :: patience
       procedure :: outruns
       procedure :: first_force
+      procedure :: ringing
       procedure :: contact_radius
       procedure :: springs_back
       procedure :: inelasticity
@@ -189,6 +190,31 @@ contains
       drag = self%kernel_viscosity()*self%law%slope(0.0_wp)
       force = drag*self%velocity/(1.0_wp + self%target%alpha(0.0_wp)*drag)
    end function first_force
+
+   !> Deflection with which the fast modes of a structure ring after the first touch. The force
+   !> ~ t^n is smooth but for its start, which leaves a mode of frequency w with the amplitude
+   !> n! F(1/w) y/w^2; the amplitudes of all modes are added
+   pure function ringing(self, slowest) result(deflection)
+      class(impact_t), intent(in) :: self
+      !> Frequency from which modes count [rad/s], > 0
+      real(wp), intent(in) :: slowest
+      !> Deflection [m]; 0 without a structure
+      real(wp) :: deflection
+
+      real(wp) :: w
+      integer :: n
+
+      deflection = 0.0_wp
+      if (.not. self%target%structure%exists()) return
+      associate (modes => self%target%structure)
+         do n = 1, size(modes%square)
+            w = sqrt(modes%square(n))
+            if (w > slowest) deflection = deflection + modes%yield(n)/w**2 &
+               *self%kernel(1.0_wp/w)*self%law%u(self%velocity/w)
+         end do
+      end associate
+      deflection = gamma(self%law%start_exponent + 1.0_wp)*deflection
+   end function ringing
 
    !> Contact radius
    elemental function contact_radius(self, indentation) result(radius)
