@@ -562,6 +562,8 @@ contains
          case ('max_force')
             ! F ~ s^n with n <= 2
             change = 2.0_wp*outcome%max_force/outcome%max_indentation*self%ringing(1)
+         case default
+            continue
          end select
       end associate
    end function ringing_of
