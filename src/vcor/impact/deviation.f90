@@ -72,8 +72,6 @@ contains
       ! where parts of opposite sign cancel, what is left is at least this share of their sum, or
       ! eta^2: a plate that takes nearly all skews the pulse, which the correlation leaves out
       real(wp), parameter :: trust = 0.2_wp
-      ! beyond, exp has no meaning
-      real(wp), parameter :: most = 5.0_wp
       type(face_losses_t) :: face
       complex(wp) :: series
       real(wp) :: e, eta, slope, change, part, whole, weight, more
@@ -88,7 +86,7 @@ contains
          - (1.0_wp - eta**2)*(face%real_face - face%model))
       whole = part*(2.0_wp*eta*abs(face%reaction) &
          + abs((1.0_wp - eta**2)*(face%real_face - face%model)))
-      change = change*(1.0_wp + second*min(abs(change), most))
+      change = change*(1.0_wp + second*bounded(abs(change)))
       if (.not. is_exact) then
          if (.not. (sphere%rigid .or. plate%rigid)) then
             series = 1.0_wp/(sphere%complex_modulus(cmplx(0.0_wp, pi/outcome%contact_time, wp)) &
@@ -108,11 +106,21 @@ contains
       ! adjoint motion, which meets the bodies with the velocity of their separation
       weight = impact%gravity*outcome%contact_time/impact%velocity
       change = change*(1.0_wp + 0.5_wp*weight)*(1.0_wp + 0.5_wp*weight/e)
-      outcome%cor_deviation = e*(exp(min(max(change, -most), most)) - 1.0_wp)
+      outcome%cor_deviation = e*(exp(bounded(change)) - 1.0_wp)
       if (.not. present(losses)) return
       part = (0.5_wp*(1.0_wp + e + weight))**2
-      outcome%wave_loss = exp(-min(part*face%model, most)) - exp(-min(part*face%real_face, most))
+      outcome%wave_loss = exp(-bounded(part*face%model)) - exp(-bounded(part*face%real_face))
    end subroutine predict
+
+   !> An exponent, in the range in which exp has a meaning here
+   pure function bounded(exponent)
+      real(wp), intent(in) :: exponent
+      real(wp) :: bounded
+
+      real(wp), parameter :: most = 5.0_wp
+
+      bounded = min(max(exponent, -most), most)
+   end function bounded
 
    !> Restitution that the formulas take
    pure function floor_of(restitution) result(e)
