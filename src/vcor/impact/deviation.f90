@@ -109,7 +109,7 @@ contains
       outcome%cor_deviation = e*(exp(bounded(change)) - 1.0_wp)
       if (.not. present(losses)) return
       part = (0.5_wp*(1.0_wp + e + weight))**2
-      outcome%wave_loss = exp(-bounded(part*face%model)) - exp(-bounded(part*face%real_face))
+      outcome%wave_loss = kept(part*face%model) - kept(part*face%real_face)
    end subroutine predict
 
    !> An exponent, in the range in which exp has a meaning here
@@ -121,6 +121,15 @@ contains
 
       bounded = min(max(exponent, -most), most)
    end function bounded
+
+   !> Share of the energy that waves leave; none are a source
+   pure function kept(loss)
+      !> Share that a small pulse would lose [-]
+      real(wp), intent(in) :: loss
+      real(wp) :: kept
+
+      kept = exp(-bounded(max(loss, 0.0_wp)))
+   end function kept
 
    !> Restitution that the formulas take
    pure function floor_of(restitution) result(e)
