@@ -426,6 +426,12 @@ def test_any_thickness_and_what_has_no_parts(sls):
     assert re.search(r"(?m)^energy_loss \[J\] +\S+ +- ", str(found))
 
 
+@pytest.mark.parametrize("form", [(1, 2), [0.1], None, True, {"a": 0.1}, "wide"])
+def test_what_is_no_distribution_is_told_the_forms(sls, form):
+    with pytest.raises(vcor.UsageError, match=r"expected such as 0.05 or '5%', '0.1' .* or '1:2'"):
+        vcor.propagate(sls, {"sphere.radius": form}, samples=8, quantities=["cor"])
+
+
 def test_elasticities_of_any_thickness(sls):
     """cor depends on ratios of moduli and densities: multiplying all by one number leaves it."""
     sls["plate.waves"] = "body"

@@ -9,6 +9,7 @@ import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -87,7 +88,13 @@ class Spread:
             one = f"one of them, such as {address}(1)" if isinstance(given, list) else "a number"
             raise UsageError(f"{address}: found {given}, expected {one}")
         value = float(given)
+        forms = "5%, 0.1 (in its unit) or 1:2, larger than 0"
+        if not _text.OPTIONS.get():
+            forms = "0.05 or '5%', '0.1' (in its unit) or '1:2', larger than 0"
+        refusal = UsageError(f"{address}={text!s:.60}: expected such as {forms}")
         if not isinstance(text, str):
+            if isinstance(text, bool) or not isinstance(text, Real):
+                raise refusal
             part = within(text, address, 0, math.inf)
             if part > 1:
                 raise UsageError(f"{address}: found {part:g}, {100 * part:g} % of the value, "
@@ -116,10 +123,7 @@ class Spread:
         if made:
             _check_deviation(case, address, value, deviation, text)
             return made
-        forms = "5%, 0.1 (in its unit) or 1:2, larger than 0"
-        if not _text.OPTIONS.get():
-            forms = "0.05 or '5%', '0.1' (in its unit) or '1:2', larger than 0"
-        raise UsageError(f"{address}={text}: expected such as {forms}")
+        raise refusal
 
     @classmethod
     def joint(cls, case: Case, source: Any) -> tuple[Case, Spread]:

@@ -88,8 +88,10 @@ class Condition:
         told = ", ".join(f"'{one[:40]}'" for one in known[:_MOST_WORDS])
         told += f" and {len(known) - _MOST_WORDS} more" * (len(known) > _MOST_WORDS)
         if not self.seen:
-            return UsageError(f"{option('where')}: {where} no column '{self.name[:60]}'; "
-                              "sheet, temperature and line are columns too")  # fmt: skip
+            others = "; sheet, temperature and line are columns too"
+            if plain(self.name) in ("sheet", "temperature", "line"):
+                others = ""
+            return UsageError(f"{option('where')}: {where} no column '{self.name[:60]}'{others}")
         return UsageError(f"{option('where')}: found no row with '{self!s:.80}', expected one of "
                           f"{told or 'its values'}")  # fmt: skip
 
