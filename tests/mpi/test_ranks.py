@@ -97,7 +97,7 @@ def test_one_voice(vcor):
     vcor.write(SLS + "&sweep parameter = 'impact.velocity', values = 1, 2, 3 /\n")
     done = run(vcor, 3, "case.nml", "--print", "cor")
     assert (done.code, done.out.count("\n"), done.err.count("\n")) == (SUCCESS, 3, 1)
-    assert "case.nml: validity: 3 of 3 points outside" in done.err
+    assert "case.nml: validity: 3 of 3 points caution" in done.err
 
 
 @pytest.mark.parametrize(
