@@ -62,7 +62,7 @@ def said(done):
 def solved(tmp_path_factory):
     """A sweep, and its files as one rank and one thread make them."""
     vcor = Vcor(tmp_path_factory.mktemp("ranks"))
-    write_long_sweep(vcor, 2.0)
+    write_long_sweep(vcor, 4.0)
     done = vcor("run", "case.nml", "--output", "ref", "--threads", "1")
     assert done.code == NUMERICAL
     vcor.reference = done
