@@ -11,6 +11,7 @@ module vcor_app_run
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
+   use vcor_impact_validity, only : forgotten_base
    use vcor_io_coverage, only : beyond_table
    use vcor_io_file, only : write_stdout
    use vcor_rounded, only : short
@@ -100,7 +101,12 @@ contains
                   //mechanics_of(job%case, reading, exact))
                if (allocated(exact%failure)) lines = lines &
                   //as_line('note: no result with '//name_of_exact(job%case)//': '//exact%failure)
-               lines = lines//measures_report(outcome, worker%problem%surroundings)
+               if (is_shown .and. .not. allocated(exact%failure)) then
+                  lines = lines//measures_report(outcome, worker%problem%surroundings, &
+                     exact%outcome)
+               else
+                  lines = lines//measures_report(outcome, worker%problem%surroundings)
+               end if
             end if
          end associate
          if (.not. is_shown) exact%outcome = outcome_t()
@@ -216,9 +222,9 @@ contains
       !> Error of code `error_numerical`; unallocated if the bodies separated or rest
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: time, too_light, reason, waves, base
+      character(len=:), allocatable :: time, too_light, reason
       real(wp) :: last, end_time
-      logical :: was_short, gave_up
+      logical :: was_short, gave_up, is_lighter
 
       if (any(outcome%status == [contact_separated, contact_resting])) return
       ! a solver may go on until the end of the contact
@@ -232,6 +238,7 @@ contains
       time = short(last)
       associate (impact => job%sweep%problem%impact)
          too_light = trim(light_plate(impact))
+         is_lighter = job%sweep%problem%surroundings%is_lighter(impact)
          ! an end of the user's that is early says nothing yet
          was_short = job%case%given('solver', 'end_time') &
             .and. last < impact%patience(impact%time_scale())
@@ -241,11 +248,11 @@ contains
          if (job%method == 'direct') reason = reason//'; a contact shorter than the ' &
             //'steps is missed, give a shorter solver.time_step'
          if (gave_up) reason = 'a contact this long needs too many steps to reach solver.end_time'
+         if (is_lighter) then
+            if (was_short) reason = reason//'; '//forgotten_base
+            if (.not. was_short) reason = forgotten_base
+         end if
          if (too_light /= '' .and. .not. was_short) reason = too_light
-         call job%case%get('plate', 'waves', waves)
-         call job%case%get('plate', 'base', base)
-         if (waves == 'body' .and. base == 'free' .and. job%case%has_thickness()) reason = reason &
-            //'; this plate is free on both sides, one on a floor needs plate.base'
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
             //'within '//time//' s: '//reason)
       else

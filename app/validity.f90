@@ -153,10 +153,12 @@ contains
 
    !> The level of an impact, a line for each measure that is not good, and one line for the good
    !> ones
-   function measures_report(outcome, surroundings) result(text)
+   function measures_report(outcome, surroundings, exact) result(text)
       type(outcome_t), intent(in) :: outcome
       !> Surroundings of the impact
       type(surroundings_t), intent(in) :: surroundings
+      !> Outcome with exact mechanics, if that differs and there is one
+      type(outcome_t), intent(in), optional :: exact
       !> Lines; the first has the level
       character(len=:), allocatable :: text
 
@@ -232,8 +234,12 @@ contains
                   //'pendulum is heavier than its ball'
             case default
                words = 'exact mechanics is predicted to give cor_sphere ' &
-                  //brief(max(outcome%cor_sphere + outcome%cor_deviation, 0.0_wp)) &
-                  //"; compare mechanics = 'exact'"
+                  //brief(max(outcome%cor_sphere + outcome%cor_deviation, 0.0_wp))
+               if (present(exact)) then
+                  words = words//', and gives '//brief(exact%cor_sphere)
+               else
+                  words = words//"; compare mechanics = 'exact'"
+               end if
                if (surroundings%is_panel) words = 'without thin-plate theory cor_sphere is ' &
                   //'predicted to be '//brief(max(outcome%cor_sphere + outcome%cor_deviation, &
                   0.0_wp))

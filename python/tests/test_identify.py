@@ -763,6 +763,22 @@ def test_another_minimum_on_the_line_does_not_end_an_interval():
         assert one.high == pytest.approx(width, rel=0.01) == -one.low
 
 
+@pytest.mark.parametrize(("unit", "turn"), [("Hz", 2 * math.pi), ("rad/s", 1.0)])
+def test_the_figure_has_the_unit_of_the_frequencies(sls, tmp_path, unit, turn):
+    at = np.array([10.0, 100.0, 1000.0])
+    modulus = sls.material("rubber").complex_modulus(turn * at)
+    rows = "".join(
+        f"{f},{one.real:.9g},{one.imag:.9g}\n" for f, one in zip(at, modulus, strict=True)
+    )
+    path = tmp_path / "moduli.csv"
+    path.write_text(f"frequency [{unit}],E' [Pa],E'' [Pa]\n{rows}", encoding="utf-8")
+    made = vcor.identify(sls, path, ["rubber.beta"]).figure()
+    below = [axis for axis in made.axes if axis.get_xlabel()]
+    assert {axis.get_xlabel() for axis in below} == {f"frequency [{unit}]"}
+    for axis in below:
+        assert np.allclose(axis.lines[0].get_xdata(), at)
+
+
 def test_temperatures_and_sources_are_distinguished():
     """In the table, the figure and the document; and the loss tangent is a result."""
     examples = ROOT / "examples" / "identification"

@@ -552,8 +552,6 @@ contains
       type(case_t) :: case
       type(problem_t) :: problem
       type(comparison_t) :: comparison
-      type(address_t) :: none(0)
-      real(wp) :: nothing(0, 1)
       real(c_double), pointer :: table(:, :)
       integer :: i
 
@@ -564,13 +562,7 @@ contains
          call c_f_pointer(results, table, [4, size(compared_names)])
          table = ieee_value(1.0_wp, ieee_quiet_nan)
       end if
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
-      if (.not. allocated(trouble)) then
-         case = handle%case
-         problem = handle%sweep%problem
-      end if
-!$omp end critical (vcor_c_api)
+      if (.not. allocated(trouble)) call take_case(handle, case, problem, trouble)
       if (.not. allocated(trouble)) then
          call compare(case, problem, comparison, trouble)
          if (allocated(trouble)) trouble%message = case%source//': '//trouble%message
@@ -602,20 +594,12 @@ contains
       type(trajectory_t) :: trajectory
       type(outcome_t) :: outcome
       type(model_t) :: exact
-      type(address_t) :: none(0)
-      real(wp) :: nothing(0, 1)
       real(c_double), pointer :: place(:)
       logical :: differs
 
       call open_case(self, handle, trouble)
       call get_array(1_c_int, cor_sphere, 'cor_sphere', place, trouble)
-!$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
-      if (.not. allocated(trouble)) then
-         case = handle%case
-         problem = handle%sweep%problem
-      end if
-!$omp end critical (vcor_c_api)
+      if (.not. allocated(trouble)) call take_case(handle, case, problem, trouble)
       if (.not. allocated(trouble)) then
          place = ieee_value(1.0_wp, ieee_quiet_nan)
          ! that the case has no result of its own does not matter
@@ -628,5 +612,24 @@ contains
       end if
       code = report_error(trouble, error)
    end function vcor_exact
+
+   !> Copy a case and the problem of its impact, to solve them while others use the handle
+   subroutine take_case(handle, case, problem, error)
+      type(handle_t), intent(inout) :: handle
+      type(case_t), intent(out) :: case
+      type(problem_t), intent(out) :: problem
+      type(error_t), allocatable, intent(out) :: error
+
+      type(address_t) :: none(0)
+      real(wp) :: nothing(0, 1)
+
+!$omp critical (vcor_c_api)
+      call build(handle, none, nothing, error)
+      if (.not. allocated(error)) then
+         case = handle%case
+         problem = handle%sweep%problem
+      end if
+!$omp end critical (vcor_c_api)
+   end subroutine take_case
 
 end module vcor_c_api

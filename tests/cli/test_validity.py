@@ -330,6 +330,9 @@ def test_screen_of_the_paper(vcor):
     """The mechanics, what the exact ones give, and a sentence for each measure that is not good."""
     out = screen(vcor, SLS)
     assert "  mechanics: waves relaxing, law boltzmann, free on both sides; exact: waves body, law receding\n" in out
+    predicted, found = re.search(r"predicted to give cor_sphere (\S+), and gives (\S+)\n", out).groups()
+    exact_one = float(re.search(r"with exact mechanics (\S+)\n", out)[1])
+    assert abs(float(found) - exact_one) < 1e-3 and abs(float(predicted) - exact_one) < 0.1
     values = re.findall(r"^ .*(?: e| e_a) +([0-9.]+) .*$", out, re.MULTILINE)
     exact = ["--set", "plate.waves=body", "--set", "contact.law=receding"]
     rows = [numbers(vcor, SLS), numbers(vcor, SLS, *exact)]

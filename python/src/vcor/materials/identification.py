@@ -36,6 +36,7 @@ from .misfit import are_alike
 from .observations import (
     Block,
     Impacts,
+    Moduli,
     Record,
     Source,
     materials_of,
@@ -241,6 +242,7 @@ def _result(
         dof=dof,
         taken=tuple(filter(None, taken)),
         alike=_correlated(problem, x, derivatives),
+        hertz=any(isinstance(block, Moduli) and block.hertz for block in problem.blocks),
         follows=problem.noise.estimated or chi2 <= float(chdtri(max(dof, 1), FOLLOWS)),
         relative_error=problem.noise.relative(problem.sigma) if problem.noise.estimated else None,
         combinations=tuple(

@@ -15,7 +15,7 @@ from ..case import number
 from .advice import percent
 from .identified import Identified
 from .observations import COEFFICIENTS, IMPACT, materials_of
-from .units import ZERO_C
+from .units import TURN, ZERO_C
 
 #: Data that are shown at most
 _MOST = 20
@@ -25,8 +25,6 @@ _NAMED = 6
 _ACROSS = {
     "force": "time [s]",
     "relaxation_modulus": "time [s]",
-    "storage_modulus": "frequency [rad/s]",
-    "loss_modulus": "frequency [rad/s]",
 }
 
 
@@ -163,7 +161,12 @@ def figure(found: Identified) -> Any:
             column = _library.columns(0).get(name)
             factor, label = _labelled(name, column.attrs if column else attrs,
                                       np.array([row["value"] for row in rows]))  # fmt: skip
-            at = np.array([row["at"] for row in rows])
+            across = _ACROSS.get(name, "velocity [m/s]")
+            unit = 1.0
+            if name in ("storage_modulus", "loss_modulus"):
+                across = f"frequency [{'Hz' if found.hertz else 'rad/s'}]"
+                unit = TURN if found.hertz else 1.0
+            at = np.array([row["at"] for row in rows]) / unit
             for key, look in looks.items():
                 some = [row for row in rows if (row["source"], str(row["temperature"])) == key]
                 some.sort(key=lambda row: row["at"])
@@ -173,6 +176,7 @@ def figure(found: Identified) -> Any:
                     np.array([row[key] for row in some])
                     for key in ("at", "value", "sigma", "model", "residual")
                 )
+                x = x / unit
                 # at several radii, say, no line leads through all
                 apart = len(set(x)) < len(set(zip(x, model, strict=True)))
                 line = x, factor * model
@@ -194,7 +198,7 @@ def figure(found: Identified) -> Any:
                 below.plot(x, residual, look.marker, ms=3, color=look.color)
             above.set_ylabel(label)
             below.axhline(0, lw=0.5, color="grey", marker="")
-            below.set(xlabel=_ACROSS.get(name, "velocity [m/s]"), ylabel="residual/error")
+            below.set(xlabel=across, ylabel="residual/error")
             if at.min() > 0 and at.max() > 8 * at.min():
                 above.set_xscale("log")
             if "modulus" in name:

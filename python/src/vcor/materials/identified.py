@@ -81,6 +81,8 @@ class Identified:
     taken: tuple[str, ...] = ()
     #: Files whose misfits are not noise: neighbours are correlated
     alike: tuple[str, ...] = ()
+    #: Whether frequencies of moduli were given in Hz, in which the figure has them, not in rad/s
+    hertz: bool = field(default=False, repr=False)
 
     def __getitem__(self, address: str) -> float:
         """Value of a parameter."""

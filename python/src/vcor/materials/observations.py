@@ -323,6 +323,8 @@ class Moduli:
 
     unknowns = 0
     taken = ""
+    #: Whether their frequencies were given in Hz
+    hertz = False
 
     def __init__(
         self, source: str, columns: Mapping[str, Floats], material: str, case: Case,
@@ -527,16 +529,18 @@ def observations(
     case: Case, source: Source, free: Sequence[str], choice: Choice | None = None
 ) -> list[Block]:
     """Data of a file or of columns, by what they are; a record of several impacts is one each."""
-    materials, taken, written = materials_of(free), "", NO_DIGITS
+    materials = materials_of(free)
+    about: dict[str, Any] = {"digits": NO_DIGITS, "hertz": False}
     if isinstance(source, Mapping):
         name = "data"
-        columns, taken = _measured(arrays(source))
+        columns, about["taken"] = _measured(arrays(source))
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
         lines = np.arange(len(next(iter(columns.values()), ()))) + 1
     else:
         name = os.fspath(source)
-        columns, taken, written, lines = read_columns(source, case, materials, choice)
+        columns, about, lines = read_columns(source, case, materials, choice)
+    taken, written = about["taken"], about["digits"]
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
@@ -554,7 +558,9 @@ def observations(
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
-        blocks.append(Moduli(name, columns, materials[0], case.copy(), written))
+        moduli = Moduli(name, columns, materials[0], case.copy(), written)
+        moduli.hertz = about["hertz"]
+        blocks.append(moduli)
     else:
         blocks.append(Impacts(name, columns, case, written))
     blocks[0].taken = taken
@@ -580,8 +586,8 @@ def read_columns(
     case: Case,
     materials: Sequence[str] = (),
     choice: Choice | None = None,
-) -> tuple[dict[str, Floats], str, Written, NDArray[np.intp]]:
-    """Columns of a file, what was taken, digits, and the line of each row.
+) -> tuple[dict[str, Floats], dict[str, Any], NDArray[np.intp]]:
+    """Columns of a file, what `read_data` says of them, and the line of each row.
 
     Moduli are tensile by Poisson's ratio of the first material.
     """
@@ -600,7 +606,7 @@ def read_columns(
         data = pd.concat(parts)
         data.attrs = parts[0].attrs
     lines = data.index.to_numpy(dtype=np.intp)
-    return _arrays(data), data.attrs["taken"], data.attrs["digits"], lines
+    return _arrays(data), data.attrs, lines
 
 
 def _single_impacts(

@@ -21,7 +21,7 @@ module vcor_solver_direct_contacts
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_richardson, only : richardson, richardson_t
-   use vcor_solver_direct_evaluation, only : parabola
+   use vcor_solver_direct_evaluation, only : fall_of, parabola
    use vcor_solver_direct_modes, only : modes_t
    use vcor_solver_direct_row, only : row_t
    use vcor_solver_type, only : solver_settings_t
@@ -423,20 +423,9 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
 
       type(state_of_modes_t) :: modes
-      real(wp) :: state(columns), back, x, lower, upper, values(-1:1)
-      integer :: iteration
+      real(wp) :: state(columns), back, x
 
-      values = run%depth(3:1:-1)
-      lower = 0.0_wp
-      upper = 1.0_wp
-      do iteration = 1, digits(1.0_wp)
-         x = 0.5_wp*(lower + upper)
-         if (parabola(values, x) > 0.0_wp) then
-            lower = x
-         else
-            upper = x
-         end if
-      end do
+      x = fall_of(run%depth(3:1:-1))
       back = (1.0_wp - x)*run%dt
       trajectory%contacts = trajectory%contacts + 1
       if (trajectory%contacts == 1) then

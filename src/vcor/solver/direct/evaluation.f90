@@ -9,7 +9,8 @@ module vcor_solver_direct_evaluation
    implicit none
    private
 
-   public :: end_of_contact, end_of_receding_contact, set_shares, find_peaks, parabola
+   public :: end_of_contact, end_of_receding_contact, set_shares, find_peaks, parabola, &
+      fall_of
 
 contains
 
@@ -84,20 +85,10 @@ contains
       !> State at the end of contact
       real(wp) :: node(columns)
 
-      real(wp) :: a(columns), theta, lower, upper, tau, once, twice
-      integer :: iteration
+      real(wp) :: a(columns), theta, tau, once, twice
 
       a = trajectory%state(:, n - 1)
-      lower = 0.0_wp
-      upper = 1.0_wp
-      do iteration = 1, digits(1.0_wp)
-         theta = 0.5_wp*(lower + upper)
-         if (parabola(condition, theta) > 0.0_wp) then
-            lower = theta
-         else
-            upper = theta
-         end if
-      end do
+      theta = fall_of(condition)
 
       ! (1 - x)^n integrated once and twice from x = 0 to 1
       once = 1.0_wp/(impact%law%start_exponent + 1.0_wp)
@@ -214,6 +205,27 @@ contains
 
       y = value(0) + 0.5_wp*x*(value(1) - value(-1) + x*(value(1) - 2.0_wp*value(0) + value(-1)))
    end function parabola
+
+   !> Place between 0 and 1 at which a parabola falls through zero
+   pure function fall_of(value) result(x)
+      !> Values at -1, 0 and 1, the last one not above 0
+      real(wp), intent(in) :: value(-1:1)
+      real(wp) :: x
+
+      real(wp) :: lower, upper
+      integer :: iteration
+
+      lower = 0.0_wp
+      upper = 1.0_wp
+      do iteration = 1, digits(1.0_wp)
+         x = 0.5_wp*(lower + upper)
+         if (parabola(value, x) > 0.0_wp) then
+            lower = x
+         else
+            upper = x
+         end if
+      end do
+   end function fall_of
 
    !> Largest indentation and force, by the parabola through the largest node and its neighbours
    pure subroutine find_peaks(trajectory)
