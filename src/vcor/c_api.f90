@@ -21,6 +21,7 @@ module vcor_c_api
    use vcor_impact_history, only : history
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : history_steps, trajectory_t
+   use vcor_impact_validity, only : surroundings_t
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
@@ -241,6 +242,7 @@ contains
       type(sweep_t) :: sweep
       type(summary_t) :: summary
       type(failures_t) :: failures
+      type(surroundings_t) :: learned
       type(address_t), allocatable :: points(:)
       type(address_t) :: none(0)
       integer, allocatable :: places(:)
@@ -278,7 +280,10 @@ contains
       end if
 !$omp end critical (vcor_c_api)
       if (allocated(error) .or. n == 0) return
-      call solve_points(sweep, team, summary, failures, error)
+      call solve_points(sweep, team, summary, failures, error, learned=learned)
+!$omp critical (vcor_c_api)
+      call handle%sweep%problem%surroundings%learn_from(learned)
+!$omp end critical (vcor_c_api)
       if (is_own .and. failures%count > 0) then
          ! the case as it is has the place of each value in its message
 !$omp critical (vcor_c_api)

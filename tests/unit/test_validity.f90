@@ -3,7 +3,7 @@ program test_validity
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : col_indentation, col_time, col_velocity, trajectory_t
    use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding
-   use vcor_impact_mobility, only : direct_mobility, mobility_t
+   use vcor_impact_mobility, only : direct_mobility, mobility_t, take_over
    use vcor_impact_validity, only : judge, level_caution, level_good, level_none, level_outside, &
       surroundings_t, thresholds
    use vcor_kinds, only : pi, wp
@@ -64,7 +64,7 @@ contains
       real(wp), parameter :: ray(1) = [1.05_wp], nu = 0.35_wp, thickness = 0.02_wp
       ! where wave, layer and contact are of one size
       real(wp), parameter :: tolerance = 1.0e-2_wp
-      type(mobility_t) :: table
+      type(mobility_t) :: table, other
       complex(wp) :: found, expected, p
       integer :: i, j
 
@@ -78,6 +78,19 @@ contains
                "table of the face")
          end do
       end do
+      ! another that has learned something else, of which this one takes over what has more
+      call other%describe(base_sliding, nu, ray)
+      call other%compliance(1, p/thickness, radius(1)*thickness, thickness, found)
+      call take_over(table, other)
+      call table%compliance(1, p/thickness, radius(1)*thickness, thickness, expected)
+      call check(.not. abs(found - expected) > 0.0_wp, "the same with what else is known")
+      call other%describe(base_free, nu, ray)
+      call other%compliance(1, p/thickness, radius(1)*thickness, thickness, found)
+      call take_over(table, other)
+      call table%describe(base_free, nu, ray)
+      call table%compliance(1, p/thickness, radius(1)*thickness, thickness, expected)
+      call check(.not. abs(found - expected) > 0.0_wp, "the table of another base")
+      call check(abs(expected) > 0.0_wp, "which is not empty")
    end subroutine test_table
 
    !> Each measure by itself, on either side of both thresholds

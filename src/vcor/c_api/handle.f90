@@ -9,6 +9,7 @@ module vcor_c_api_handle
    use vcor_case_catalogue, only : catalogue, find_group, groups, real_key
    use vcor_case_checks, only : note_length, validate
    use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_impact_validity, only : surroundings_t
    use vcor_io_data_file, only : read_data
    use vcor_io_path, only : folder_of, full_path, join_path
    use vcor_io_posix, only : fortran => fortran_text
@@ -243,6 +244,8 @@ contains
       type(address_t) :: address
       type(address_t), allocatable :: own(:)
       type(entry_t) :: entry
+      !> What is known of the face, from before a change of the case
+      type(surroundings_t) :: known
       integer :: i, item
 
       if (allocated(handle%built_for)) then
@@ -280,8 +283,10 @@ contains
             merge(values(i, :1), 1.0_wp, ieee_is_finite(values(i, :1))), given=.true.)
       end do
       call check(case, error)
+      known = handle%sweep%problem%surroundings
       if (.not. allocated(error)) call new_sweep(handle%sweep, case, error)
       if (allocated(error)) return
+      call handle%sweep%problem%surroundings%learn_from(known)
       do i = 1, size(handle%sweep%grid%axes)
          if (any(places == handle%sweep%grid%axes(i)%address)) cycle
          call raise(error, error_input, case%location('sweep', 'parameter', i) &

@@ -11,12 +11,12 @@
 !> that impacts have needed so far. A material that relaxes turns p off the ray; as c is analytic,
 !> the polynomials between the nodes are taken at the complex logarithm of p.
 module vcor_impact_mobility
-   use vcor_impact_response, only : base_free, base_half_space, static_response, wave_response
+   use vcor_impact_response, only : base_free, base_half_space, static_response, wave_responses
    use vcor_kinds, only : pi, wp
    implicit none
    private
 
-   public :: mobility_t, direct_mobility
+   public :: mobility_t, take_over, direct_mobility
 
    !> Spacing of the nodes in ln(p H), and in ln(a/H). Cubic polynomials are off by 1e-3
    !> typically, and by 6e-3 where a layer, a wave and the contact are of one size
@@ -26,6 +26,10 @@ module vcor_impact_mobility
    !> small to matter; a contact that is smaller still is a point
    integer, parameter :: first_p = -70, last_p = 53
    integer, parameter :: first_a = -29, last_a = 13
+
+   !> Integers up to the number of nodes
+   integer, parameter :: short = selected_int_kind(int(log10(real((last_p - first_p + 1) &
+      *(last_a - first_a + 1)*2))) + 1)
 
    !> The table of one Poisson's ratio and base; a table is filled where it is used, and a value
    !> does not depend on the order in which it is
@@ -37,10 +41,12 @@ module vcor_impact_mobility
       real(wp) :: poisson_ratio = -2.0_wp
       !> Arguments of the rays of p, shape (rays)
       real(wp), allocatable :: ray(:)
-      !> Q' c H over `magnitude` at the nodes, shape (p, a, rays)
-      complex(wp), allocatable :: value(:, :, :)
-      !> Whether a node has its value, same shape
-      logical, allocatable :: is_known(:, :, :)
+      !> Q' c H over `magnitude` at the nodes that are known; there may be room for more
+      complex(wp), allocatable :: value(:)
+      integer :: known = 0
+      !> Place of a node in `value`, 0 if it is not known, shape (p, a, rays): small, as each
+      !> thread and each call of the library has a copy
+      integer(short), allocatable :: place(:, :, :)
    contains
       procedure :: describe
       procedure :: compliance
@@ -61,13 +67,25 @@ contains
       if (base == self%base .and. .not. abs(poisson_ratio - self%poisson_ratio) > 0.0_wp) return
       self%base = base
       self%poisson_ratio = poisson_ratio
-      if (.not. allocated(self%value)) then
+      if (.not. allocated(self%place)) then
          allocate (self%ray, source=ray)
-         allocate (self%value(first_p:last_p, first_a:last_a, size(ray)), &
-            self%is_known(first_p:last_p, first_a:last_a, size(ray)))
+         allocate (self%place(first_p:last_p, first_a:last_a, size(ray)))
+         allocate (self%value(64))
       end if
-      self%is_known = .false.
+      self%place = 0
+      self%known = 0
    end subroutine describe
+
+   !> Take the table of another if that is of something else, or knows more
+   pure subroutine take_over(self, other)
+      type(mobility_t), intent(inout) :: self
+      type(mobility_t), intent(in) :: other
+
+      if (other%known == 0) return
+      if (other%base == self%base .and. other%known <= self%known .and. &
+         .not. abs(other%poisson_ratio - self%poisson_ratio) > 0.0_wp) return
+      self = other
+   end subroutine take_over
 
    !> Q' c(p)
    pure subroutine compliance(self, ray, p, radius, thickness, extra)
@@ -106,7 +124,8 @@ contains
          if (.not. abs(weight_a(m)) > 0.0_wp) cycle
          do k = 1, 4
             call learn(self, i + k - 1, j + m - 1, ray)
-            extra = extra + weight_p(k)*weight_a(m)*self%value(i + k - 1, j + m - 1, ray)
+            extra = extra + weight_p(k)*weight_a(m) &
+               *self%value(self%place(i + k - 1, j + m - 1, ray))
          end do
       end do
       extra = extra*magnitude(self%base, p*length)/length
@@ -128,13 +147,20 @@ contains
       !> Numbers of the node in p and a, and of the ray
       integer, intent(in) :: i, j, ray
 
+      complex(wp), allocatable :: more(:)
       complex(wp) :: p
 
-      if (self%is_known(i, j, ray)) return
+      if (self%place(i, j, ray) > 0) return
+      if (self%known == size(self%value)) then
+         allocate (more(2*self%known))
+         more(:self%known) = self%value
+         call move_alloc(more, self%value)
+      end if
       p = exp(cmplx(step_p*real(i, wp), self%ray(ray), wp))
-      self%value(i, j, ray) = direct_mobility(self%base, self%poisson_ratio, p, &
+      self%known = self%known + 1
+      self%value(self%known) = direct_mobility(self%base, self%poisson_ratio, p, &
          exp(step_a*real(j, wp)))/magnitude(self%base, p)
-      self%is_known(i, j, ray) = .true.
+      self%place(i, j, ray) = int(self%known, short)
    end subroutine learn
 
    !> How Q' c H goes for small and for large p, so that the quotient varies little
@@ -175,8 +201,9 @@ contains
       real(wp), parameter :: step = 0.125_wp
       ! below, L does not change; above, g^2 is below 1e-4
       real(wp), parameter :: low = 3.0e-3_wp, high = 20.0_wp
-      complex(wp) :: excess
-      real(wp) :: k, least
+      complex(wp), allocatable :: excess(:)
+      real(wp), allocatable :: k(:)
+      real(wp) :: least
       integer :: i, n
 
       least = min(abs(p), 1.0_wp/radius)
@@ -184,16 +211,13 @@ contains
       if (base == base_free) least = min(least, sqrt(abs(p)))
       least = low*least
       n = ceiling(log(high/radius/least)/step)
-      extra = 0.0_wp
-      do i = 0, n
-         k = least*exp(step*real(i, wp))
-         excess = wave_response(base, poisson_ratio, 1.0_wp, k, p) &
-            - static_response(base, poisson_ratio, k)
-         ! the part below the first node, and half of its weight
-         if (i == 0) excess = excess*(0.5_wp + 1.0_wp/step)
-         extra = extra + excess*(k*transform(k*radius)**2)
-      end do
-      extra = extra*step/pi
+      allocate (k(0:n), excess(0:n))
+      k = [(least*exp(step*real(i, wp)), i=0, n)]
+      call wave_responses(base, poisson_ratio, 1.0_wp, k, p, excess)
+      excess = excess - static_response(base, poisson_ratio, k)
+      ! the part below the first node, and half of its weight
+      excess(0) = excess(0)*(0.5_wp + 1.0_wp/step)
+      extra = sum(excess*(k*transform(k*radius)**2))*step/pi
    end function direct_mobility
 
    !> Transform of a Hertz contact, g(z) = 3 (sin z - z cos z)/z^3

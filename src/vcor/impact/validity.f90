@@ -6,7 +6,7 @@ module vcor_impact_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_impact_deviation, only : face_losses, face_losses_t, predict
    use vcor_impact_face, only : base_free, base_half_space, base_sliding
-   use vcor_impact_mobility, only : mobility_t
+   use vcor_impact_mobility, only : mobility_t, take_over
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_plate, trajectory_t
@@ -121,6 +121,7 @@ module vcor_impact_validity
       real(wp) :: density = 0.0_wp
    contains
       procedure :: is_lighter
+      procedure :: learn_from
    end type surroundings_t
 
 contains
@@ -136,6 +137,14 @@ contains
          .and. .not. (ieee_is_nan(self%radius) .or. ieee_is_nan(self%thickness))
       if (is_lighter) is_lighter = pi*self%radius**2*self%thickness*self%density < impact%mass
    end function is_lighter
+
+   !> Take over what another has learned of the response of the face
+   pure subroutine learn_from(self, other)
+      class(surroundings_t), intent(inout) :: self
+      type(surroundings_t), intent(in) :: other
+
+      call take_over(self%mobility, other%mobility)
+   end subroutine learn_from
 
    !> Set and judge the measures
    pure subroutine assess(outcome, impact, trajectory, around, sphere, plate, carrier)

@@ -30,7 +30,7 @@ module vcor_sweep_points
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
-   use vcor_impact_validity, only : forgotten_base
+   use vcor_impact_validity, only : forgotten_base, surroundings_t
    use vcor_kinds, only : wp
    use vcor_number, only : contains_number, interval_t
    use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, rank_count, this_rank
@@ -271,7 +271,7 @@ contains
    end subroutine solve_sweep
 
    !> Solve the pending points of a sweep; all ranks call this
-   subroutine solve_points(sweep, threads, summary, failures, error, monitor)
+   subroutine solve_points(sweep, threads, summary, failures, error, monitor, learned)
       type(sweep_t), intent(in) :: sweep
       !> Threads of this rank, > 0; without OpenMP there is one
       integer, intent(in) :: threads
@@ -283,6 +283,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Observer of the sweep
       class(monitor_t), intent(inout), optional :: monitor
+      !> Surroundings of the impacts, which take over what this rank has learned of the face
+      type(surroundings_t), intent(inout), optional :: learned
 
       !> Working storage of the threads of this rank, kept from round to round
       type(worker_t), allocatable :: workers(:)
@@ -318,6 +320,10 @@ contains
             int(real(length, wp)*round_time/max(clock() - start, epsilon(start)))))
       end do
       if (agreed(2) == 0 .and. this_rank() == 0) call count_failures(sweep, summary, failures)
+      if (.not. present(learned)) return
+      do i = 1, threads
+         if (workers(i)%is_ready) call learned%learn_from(workers(i)%problem%surroundings)
+      end do
    end subroutine solve_points
 
    !> Points of a round that are dealt to a rank: each rank has one of every N consecutive points,
