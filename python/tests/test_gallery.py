@@ -8,7 +8,7 @@ import sys
 import pytest
 from conftest import ROOT
 
-PAGE = ROOT / "docs" / "gallery.md"
+PAGE = ROOT / "docs" / "figures.md"
 FOLDER = ROOT / "docs" / "gallery"
 RESPONSES = ["indentation s/sₘₐₓ", "velocity −s′/v₀", "force F/Fₘₐₓ", "time [ms]"]
 COR = "coefficient of restitution"
