@@ -582,6 +582,6 @@ def test_the_example_of_the_page(vcor):
     """Its numbers are those of docs/data.md, and those of the material that the data are of."""
     words = ["--model", "mittag_leffler", "--density", "1100", "--name", "soft rubber"]
     out = vcor.succeeds("fit", ROOT / "examples" / "soft_rubber_data.csv", *words)
-    shown = DATA[DATA.index("57 points: time") : shown.index("band of the data    1.0E-07")]
+    shown = DATA[DATA.index("57 points: time") : DATA.index("band of the data    1.0E-07")]
     assert shown in out
     assert group(out)["exponent"] == pytest.approx(0.5, rel=1e-4)
