@@ -223,6 +223,23 @@ def test_commands(folder, page):
         assert f"coefficient of restitution: {value:.4f} here" in text
 
 
+@pytest.mark.parametrize("name", ["lammps", "mujoco"])
+def test_the_line_of_the_export(folder, name):
+    """The line that a page shows is one of the file that its command writes, to five digits of its numbers."""
+    page = f"docs/exchange/{name}.md"
+    shell(folder, blocks(page, "sh")[0], text_of(page))
+    number = re.compile(r"-?\d+\.\d+(?:e[+-]\d+)?")
+
+    def split(line):
+        return " ".join(number.sub("#", line).split()), [float(word) for word in number.findall(line)]
+
+    (shown,) = [line for line in re.findall("^    (.*)$", text_of(page), re.MULTILINE) if re.search(r"\d\.\d{5}", line)]
+    (path,) = [path for path in (folder / name).glob(f"granular_pair_{name}.*") if path.suffix != ".svg"]
+    made = dict(map(split, path.read_text("utf-8").splitlines()))
+    words, numbers = split(shown)
+    assert words in made and numbers == pytest.approx(made[words], rel=1e-5)
+
+
 def rounded(value, shown):
     """A number as the page shows it; a word as it is."""
     if not re.match(r"-?\d", shown):
