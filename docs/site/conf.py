@@ -86,7 +86,7 @@ def start(text):
     """The README as the first page: no badge, its folder is one above that of the pages."""
     text = re.sub(r"^\[!\[.*?\]\([^)]*\)\]\([^)]*\) ", "", text, flags=re.M)
     text = re.sub(r"\[([^\]]+)\]\(docs/README.md\)", r"\1", text)
-    text = text.replace('src="docs/', 'src="').replace("](docs/", "](")
+    text = text.replace('src="docs/', 'src="').replace("](docs/", "](").replace("](CHANGELOG.md)", "](changes.md)")
     return re.sub(r"\]\((?=examples/|CONTRIBUTING|CITATION|LICENSE)", "](../", text)
 
 

@@ -575,7 +575,7 @@ def test_commands_of_the_document(vcor, words):
 
 
 def test_the_document_has_commands():
-    assert len(COMMANDS) == 14
+    assert len(COMMANDS) == 10
 
 
 def test_the_example_of_the_page(vcor):
