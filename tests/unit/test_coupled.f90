@@ -20,6 +20,7 @@ program test_coupled
    use vcor_solver_coupled, only : coupled_t, new_coupled
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
    use vcor_solver_coupled_march, only : course_ended, course_t, march
+   use vcor_solver_coupled_spectrum, only : spectrum_t
    use vcor_solver_ive, only : ive_t
    use vcor_solver_type, only : default_accuracy, solver_settings_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
@@ -638,11 +639,12 @@ contains
       real(wp), parameter :: window = 2.5e-3_wp, radius = 4.0e-3_wp
       type(mesh_t) :: mesh
       type(kernel_t) :: kernel
+      type(spectrum_t) :: spectrum
       type(error_t), allocatable :: error
 
       mesh = mesh_t(steps, springs, hats, window, radius)
       if (present(longer)) mesh%radius = longer*radius
-      call new_kernel(kernel, impact%face, mesh, error)
+      call new_kernel(kernel, impact%face, mesh, spectrum, error)
       if (.not. allocated(error)) call march(impact, kernel, course, error)
       if (allocated(error)) call success(error, "an impact is marched")
    end function course_on

@@ -19,6 +19,7 @@ module vcor_solver_coupled
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
    use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
       march
+   use vcor_solver_coupled_spectrum, only : spectrum_t
    use vcor_solver_type, only : as_text, default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -32,6 +33,8 @@ module vcor_solver_coupled
 
    !> Places for kernels, and their largest size in real numbers, 64 MB
    integer, parameter :: slots = 64, most_numbers = 8000000
+   !> Places for the responses that meshes of an impact share: three of its pairs of meshes
+   integer, parameter :: spectra = 3
 
    !> Mesh of an impact
    type :: plan_t
@@ -51,6 +54,9 @@ module vcor_solver_coupled
       type(slot_t), allocatable :: slot(:)
       !> Place of the newest kernel
       integer :: newest = slots
+      !> Responses of the impact solved last, by their steps, and the place of the newest
+      type(spectrum_t), allocatable :: spectrum(:)
+      integer :: newest_spectrum = spectra
       !> Operations that the impact has taken so far
       real(wp) :: work = 0.0_wp
       !> Mesh of the impact solved last, and that which all take
@@ -130,7 +136,7 @@ contains
       type(solver_settings_t), intent(in) :: settings
 
       self%settings = settings
-      allocate (self%slot(slots))
+      allocate (self%slot(slots), self%spectrum(spectra))
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('coupled')
    end subroutine new_coupled
 
@@ -475,11 +481,25 @@ contains
          call make_room(self)
          i = self%newest
          allocate (self%slot(i)%kernel)
-         call new_kernel(self%slot(i)%kernel, impact%face, mesh, error)
+         call new_kernel(self%slot(i)%kernel, impact%face, mesh, self%spectrum(place(self, mesh)), &
+            error)
          if (allocated(error)) return
       end if
       call march(impact, self%slot(i)%kernel, course, error)
    end subroutine run
+
+   !> Place of the spectrum for a mesh: that with as many steps, or the oldest
+   function place(self, mesh) result(i)
+      class(coupled_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      integer :: i
+
+      do i = 1, size(self%spectrum)
+         if (self%spectrum(i)%moduli%steps == mesh%steps) return
+      end do
+      self%newest_spectrum = 1 + modulo(self%newest_spectrum, size(self%spectrum))
+      i = self%newest_spectrum
+   end function place
 
    !> Make room for a kernel: delete the oldest
    pure subroutine make_room(self)
