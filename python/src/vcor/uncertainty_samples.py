@@ -55,6 +55,8 @@ LONG, TRIAL, MOST_TRIED = 60.0, 0.3, 64
 THIN_WAVES = ("hereditary", "none")
 #: Columns that tell impacts apart between which results are not smooth
 STATE = ("status", "contacts")
+#: How often points are drawn in the place of those whose values make no impact
+ROUNDS = 8
 #: Impacts that elasticities take, to each parameter
 OTHERS = 4
 
@@ -213,7 +215,8 @@ class _Corrected:
         self.stated = [self.columns.index(name) if name in known else -1 for name in stated]
         # points that come later are in the gaps of those before
         self.design = qmc.Sobol(len(self.coordinates.uniform), seed=np.random.default_rng(seed))
-        self.random = np.random.default_rng([seed, 1])
+        random = np.random.default_rng([seed, 1])
+        self.fresh = lambda n: random.random((n, len(self.coordinates.uniform)))
         self.thin = _thin(self.case)
         #: Results of thin mechanics at the samples of each plan, where they were needed
         self.of_samples: dict[str, list[Floats]] = {}
@@ -231,9 +234,12 @@ class _Corrected:
         further = max(FRESH, FRESH_OF_POINT * len(self.plans))
         if not self.thin or number + further > count / 2:
             return None
-        points, before = self._points(self.design.random(number), count), math.inf
+        points, before = self._points(self.design.random, number, announced=True), math.inf
         while True:
-            fresh = self._points(self.random.random((further, len(self.coordinates.uniform))))
+            fresh = self._points(self.fresh, further)
+            if min(len(points.z) - number, len(fresh.z) - further) < 0:
+                why = "few samples are impacts"
+                break
             if not self._are_smooth(points.with_more(fresh)):
                 why = "results jump between the samples"
                 break
@@ -258,7 +264,8 @@ class _Corrected:
                 why = (f"thin mechanics with a correction from {self.solved} exact impacts err by "
                        f"{100 * float(error.max()):.2g} % of the standard deviation")  # fmt: skip
                 break
-            points = points.with_more(fresh).with_more(self._points(self.design.random(number)))
+            points = points.with_more(fresh)
+            points = points.with_more(self._points(self.design.random, number))
             number, before = 2 * number, worst
         say(self.case, count, self.seconds / self.solved, f"{why}: ")
         return None
@@ -287,20 +294,30 @@ class _Corrected:
                 return case._solve(given, table, self.columns, 1)[0]
             return case._solve_all(given, table, self.columns, self.threads, None)
 
-    def _points(self, share: Floats, announced: int = 0) -> _Points:
-        """Points at shares of the distributions, and their results.
+    def _points(
+        self, shares: Callable[[int], Floats], number: int, announced: bool = False
+    ) -> _Points:
+        """A number of points at shares of the distributions, and their results.
 
         Values that make no impact are left out. The first points say how long all take.
         """
-        z = np.where(self.coordinates.uniform, math.sqrt(12) * (share - 0.5), ndtri(share))
-        which = np.zeros(len(z), dtype=np.intp)
-        if self.along:
-            which = (share[:, -1] * len(self.plans)).astype(np.intp)
-            z[:, -1] = self._place_along(which)
-        thin = {name: self._results(one, which, z) for name, one in self.thin.items()}
         state = self.columns.index("status")
-        kept = np.all([one[:, state] != INVALID for one in thin.values()], axis=0)
-        which, z = which[kept], z[kept]
+        which, z = np.empty(0, dtype=np.intp), np.empty((0, len(self.coordinates.uniform)))
+        thin = {name: np.empty((0, len(self.columns))) for name in self.thin}
+        for _ in range(ROUNDS):
+            if len(z) == number:
+                break
+            share = np.clip(shares(number), 1e-12, 1 - 1e-12)
+            new = np.where(self.coordinates.uniform, math.sqrt(12) * (share - 0.5), ndtri(share))
+            of = np.zeros(number, dtype=np.intp)
+            if self.along:
+                of = (share[:, -1] * len(self.plans)).astype(np.intp)
+                new[:, -1] = self._place_along(of)
+            found = {name: self._results(one, of, new) for name, one in self.thin.items()}
+            kept = np.all([one[:, state] != INVALID for one in found.values()], axis=0)
+            kept &= np.cumsum(kept) <= number - len(z)
+            which, z = np.concatenate([which, of[kept]]), np.vstack([z, new[kept]])
+            thin = {name: np.vstack([one, found[name][kept]]) for name, one in thin.items()}
         exact, begin, trial = [], time.perf_counter(), min(2 * _cores(self.threads), len(z) - 1)
         for part in (slice(0, trial), slice(trial, len(z))):
             exact.append(self._results(self.case, which[part], z[part]))
@@ -309,7 +326,7 @@ class _Corrected:
                 more = len(self.plans) * OTHERS * len(self.plans[0].addresses)
                 say(self.case, len(z) + more, (time.perf_counter() - begin) / trial)
         self.seconds += time.perf_counter() - begin
-        return _Points(which, z, {name: one[kept] for name, one in thin.items()}, np.vstack(exact))
+        return _Points(which, z, thin, np.vstack(exact))
 
     def _place_along(self, which: NDArray[np.intp]) -> Floats:
         """Coordinate of plans along the sweep."""
@@ -376,7 +393,13 @@ class _Corrected:
         which = np.full(len(z), i)
         needed = {key[0] for key in correction.keys if key}
         thin = {name: self._results(self.thin[name], which, z) for name in needed}
-        return self._corrected(correction, which, z, thin)
+        found = self._corrected(correction, which, z, thin)
+        # beyond the ends of uniform distributions the correction knows nothing
+        uniform = np.array(self.plans[i].uniform)
+        beyond = np.flatnonzero((np.abs(z[:, uniform]) > math.sqrt(3) + 1e-9).any(axis=1))
+        if beyond.size:
+            found[beyond] = self._results(self.case, which[beyond], z[beyond])[:, : found.shape[1]]
+        return found
 
     def _corrected(
         self, correction: Correction, which: NDArray[np.intp], z: Floats, thin: dict[str, Floats]
