@@ -89,7 +89,7 @@ def bands(
     vary, covariance
         As for `propagate`. The swept parameter may vary about its values: "5%" or "0.1".
     samples
-        Impacts that are solved at each value, about.
+        Samples at each value, about.
     quantities
         Columns of the summary; by default all quantities that the impacts have.
     seed, threads
