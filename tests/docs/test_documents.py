@@ -335,7 +335,7 @@ def test_the_sweep_of_the_page(folder):
 @pytest.mark.parametrize(
     "language, names",
     [
-        ("fortran", ["app/from_case.f90", "app/from_sweep.f90", "app/from_code.f90"]),
+        ("fortran", ["app/from_case.f90", "app/from_sweep.f90", "app/from_code.f90", "app/from_structure.f90"]),
         ("c", ["c/from_c.c"]),
         ("cmake", ["CMakeLists.txt"]),
         ("toml", ["fpm.toml"]),
