@@ -373,6 +373,18 @@ def test_undamped_block_under_its_ball(vcor):
     assert done.code == SUCCESS or done.err.count("\n") == 1
 
 
+def test_stays_within_the_reach(vcor):
+    """Balls that hop on a light undamped block for ever: each ends with one line, some of them in flight."""
+    lines = []
+    for velocity in (2e-4, 3e-4, 5e-4):
+        vcor.write(case("body = 'block', mass = 0.003, stiffness = 1e4", impact=f"velocity = {velocity}, gravity = 9.81"))
+        done = vcor("run", "case.nml", "--print", "contacts")
+        if done.code != SUCCESS:
+            assert done.code == NUMERICAL and done.err.count("\n") == 1
+            lines.append(done.err)
+    assert any("stays within the reach of the structure, without damping for ever" in line for line in lines)
+
+
 def test_help(vcor):
     help_text = vcor.succeeds("help", "target.body")
     assert "one of plate, beam, rod, block," in help_text

@@ -34,6 +34,8 @@ module vcor_solver_ringing
       real(wp), allocatable :: missed(:)
       !> Number of modes that can be resolved: each of the others stands for many
       integer :: modes = 0
+      !> Flexibility over the square of the frequency of those that stand for many [m s2/N]
+      real(wp) :: inertia = 0.0_wp
       !> Time scale of the contact [s]
       real(wp) :: time_scale = 0.0_wp
       !> Longest duration of a panel of each map [s]; 0: not yet found
@@ -44,6 +46,7 @@ module vcor_solver_ringing
       procedure :: added
       procedure :: accept
       procedure :: velocity_errors
+      procedure :: velocity_of_inertia
       procedure, private :: deflection
       procedure :: add_errors
    end type ringing_t
@@ -67,6 +70,7 @@ contains
       self%decay = 0.5_wp*vibration%damping
       allocate (self%amplitude(total), self%velocity(total), self%missed(self%modes), &
          source=0.0_wp)
+      self%inertia = sum(vibration%yield(self%modes + 1:)/self%frequency(self%modes + 1:)**4)
       do n = 1, total
          if (.not. self%frequency(n) > 0.0_wp) cycle
          self%amplitude(n) = impact%ringing(self%frequency(n), vibration%yield(n), time_scale)
@@ -107,6 +111,9 @@ contains
       missed = 0.0_wp
       ! the error of seven stages is below rounding
       if (phase < 1.0_wp) return
+      ! all but a few per cent: the rule damps the mode
+      missed = 1.0_wp
+      if (phase > 100.0_wp) return
       inverse = map%last*map%left_one/(1.0_wp + (phase*map%eigenvalue)**2)
       left = 1.0_wp - sum(real(map%last*map%left_one, wp))
       missed = hypot(cos(phase) - left - sum(real(inverse, wp)), &
@@ -220,6 +227,18 @@ contains
          end if
       end do
    end function velocity_errors
+
+   !> Velocity of the sphere that a contact misses where modes that stand for many follow the force
+   !> as springs, without inertia: deflection is then too large by C F''/w^2, and the impulse by
+   !> C/w^2 times the integral of S F'', for half a sine in s two masses times v0 over T^4
+   pure function velocity_of_inertia(self, impact) result(velocity)
+      class(ringing_t), intent(in) :: self
+      type(impact_t), intent(in) :: impact
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = 2.0_wp*self%inertia*impact%mass*impact%velocity/self%time_scale**4
+   end function velocity_of_inertia
 
    !> Deflection with which the modes ring that panels have missed, and those that stand for many
    pure function deflection(self)

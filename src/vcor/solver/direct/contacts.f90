@@ -57,6 +57,8 @@ module vcor_solver_direct_contacts
       !> Modes of the structure and springs of the contact
       type(modes_t) :: modes
       type(row_t) :: row
+      !> Whether no mode is a rigid motion
+      logical :: is_held = .false.
       !> Flexibility that follows at once [m/N]
       real(wp) :: residual = 0.0_wp
       !> Time [s], indentation [m], impulse [N s] and its integral [N s2]
@@ -229,7 +231,8 @@ contains
          call ringing%begin(impact, vibration, impact%time_scale())
          of_modes = ringing%velocity_errors(impact, abs(last(trajectory, col_velocity)), &
             last(trajectory, col_indentation))
-         call ringing%add_errors(impact, trajectory, of_modes(2), trajectory%contacts)
+         call ringing%add_errors(impact, trajectory, of_modes(2) &
+            + ringing%velocity_of_inertia(impact), trajectory%contacts)
       end subroutine set_errors
    end subroutine solve_contacts
 
@@ -354,6 +357,7 @@ contains
 
       self%dt = dt
       self%residual = vibration%residual
+      self%is_held = all(vibration%square > 0.0_wp)
       call self%modes%prepare(vibration, dt)
       call self%row%prepare(terms, impact%law, dt, 0.0_wp)
       if (.not. self%residual > 0.0_wp) self%force(1) = impact%first_force()
@@ -512,8 +516,13 @@ contains
       real(wp), intent(in) :: reach
       logical :: has_left
 
-      has_left = vibration%is_left_by(run%modes%state(), run%sphere(impact), &
-         run%sphere_velocity(impact), reach)
+      if (run%is_held) then
+         ! the same without the state of all modes
+         has_left = run%sphere_velocity(impact) < 0.0_wp .and. -run%sphere(impact) >= reach
+      else
+         has_left = vibration%is_left_by(run%modes%state(), run%sphere(impact), &
+            run%sphere_velocity(impact), reach)
+      end if
    end function has_left
 
    !> Whether a sphere without contact is closest to the structure, and so close that it touches it

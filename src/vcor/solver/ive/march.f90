@@ -28,7 +28,7 @@ module vcor_solver_ive_march
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
    use vcor_solver_ive_panel, only : step_t
-   use vcor_tuning, only : ive_first, ive_growth, ive_leftover, ive_part, &
+   use vcor_tuning, only : direct_most_work, ive_first, ive_growth, ive_leftover, ive_part, &
       ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, ive_safety, ive_settling, &
       ive_share
    implicit none
@@ -40,6 +40,8 @@ module vcor_solver_ive_march
    integer, parameter :: most_panels = 20000
    !> Number of times that a panel in which t1 rises is halved before the rise is real
    integer, parameter :: most_halvings = 4
+   !> Multiplications in the time that a panel takes for each mode of a structure
+   real(wp), parameter :: work_of_mode = 300.0_wp
 
 contains
 
@@ -69,6 +71,7 @@ contains
 
       type(course_t) :: course
       type(approach_t), target :: approach
+      real(wp) :: work
       integer :: trial
       logical :: over, solved
 
@@ -77,7 +80,11 @@ contains
       call start(course, rules, bridge, impact, sums, approach, accuracy, share, time_scale, &
          end_time)
       call course%begin(trajectory)
+      work = 0.0_wp
+      if (allocated(sums%vibration)) work = work_of_mode*real(size(sums%vibration%square), wp)
       do trial = 1, most_panels
+         ! a contact that takes so many panels lasts: product integration follows it in less time
+         if (real(trial, wp)*work > direct_most_work) exit
          call choose_step(course)
          if (.not. course%step%duration > epsilon(1.0_wp)*course%fine%start%time) exit
          call solve_step(course, solved)
