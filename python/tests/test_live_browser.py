@@ -121,7 +121,9 @@ def said(shown, words):
 
 def test_values_change_e_to_that_of_the_program(watched, url):
     shown = watched.open(url)
-    assert shown.title() == shown.inner_text("h1") == "Hammer on a rubber pad that is bonded to steel"
+    assert (
+        shown.title() == shown.inner_text("h1") == "Hammer on a rubber pad that is bonded to steel"
+    )
     assert number(shown) == program(PAD)
     # a height in place of the velocity, in a unit of its own; the other one is empty then
     give(shown, "Drop height [mm]", "5.3 cm")

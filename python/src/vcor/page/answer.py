@@ -135,8 +135,8 @@ def _numbers(case: Case) -> dict[str, float | str]:
     """All columns of the summary."""
     columns = _library.columns(0)
     found, _ = case._solve([], np.empty((1, 0)), list(columns), 1)
-    return {name: column.value(value)
-            for (name, column), value in zip(columns.items(), found[0].tolist(), strict=True)}  # fmt: skip
+    pairs = zip(columns.items(), found[0].tolist(), strict=True)
+    return {name: column.value(value) for (name, column), value in pairs}
 
 
 def _remarks(case: Case, numbers: Mapping[str, float | str]) -> list[str]:

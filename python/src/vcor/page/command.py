@@ -33,8 +33,8 @@ def _parser() -> _command.Parser:
     add("--body", choices=("plate", "sphere"),
         help="with --save: body whose material is chosen; default: plate")  # fmt: skip
     add("--points", metavar="N", type=int,
-        help=f"with --save: points along each range, {LEAST_POINTS} to {MOST_POINTS}; default: what "
-        "some 10 s allow, 17 to 129 for one range, 9 to 65 for two, 7 to 25 for three")  # fmt: skip
+        help=f"with --save: points along each range, {LEAST_POINTS} to {MOST_POINTS}; default: "
+        "what some 10 s allow, 17 to 129 for one, 9 to 65 for two, 7 to 25 for three")  # fmt: skip
     add("--threads", metavar="N", type=int,
         help="with --save: threads; default: one per core")  # fmt: skip
     add("--port", metavar="N", type=int,
@@ -73,14 +73,12 @@ def _work(options: argparse.Namespace) -> None:
         sys.stdout.write(f"{made}\nwritten {path}\n")
 
 
-def _serve(
-    options: argparse.Namespace, vary: dict[str, str], settings: dict[str, str]
-) -> None:
+def _serve(options: argparse.Namespace, vary: dict[str, str], settings: dict[str, str]) -> None:
     """Open a live page."""
     for name in ("body", "points", "threads"):
         if getattr(options, name) is not None:
-            raise UsageError(f"--{name}: found it without --save, expected --save FILE.html: a live "
-                             "page solves what it shows")  # fmt: skip
+            raise UsageError(f"--{name}: found it without --save, expected --save FILE.html: a "
+                             "live page solves what it shows")  # fmt: skip
     # its parts are not needed for a file
     from .server import serve
 

@@ -158,8 +158,8 @@ class Figures:
         self._bars = made.segment("x", "low", "x", "high", source=points, line_width=1.5)
         self._points = made.scatter("x", "e", source=points, size=8, marker="diamond")
         self._here = made.scatter("x", "e", source=here, size=13, line_width=2.5, fill_alpha=0)
-        made.add_tools(HoverTool(renderers=[self._points, self._here, *[one for one, _ in self._lines]],
-                                 tooltips=[(key.label, "$x"), ("e", "$y")]))  # fmt: skip
+        shown = [self._points, self._here, *[one for one, _ in self._lines]]
+        made.add_tools(HoverTool(renderers=shown, tooltips=[(key.label, "$x"), ("e", "$y")]))
         self.curve = made
         for source in self._curves:
             source.data = {column: [] for column in source.data}

@@ -115,8 +115,9 @@ class Field:
         value = case[self.address]
         if isinstance(self.control, Select):
             self.control.options = self._options(case)
-            shown = {True: ".true.", False: ".false."}.get(value, value)  # type: ignore[call-overload]
-            self.control.value = "" if shown is None else str(shown)
+            if isinstance(value, bool):
+                value = ".true." if value else ".false."
+            self.control.value = "" if value is None else str(value)
         else:
             self.control.value = self.key.shown(value)
             self._slide(value)
@@ -164,11 +165,9 @@ class Field:
         """Values of the slider around one, as texts in the usual unit."""
         first, last, is_log = start_of(value, self.key.unit)
         if is_log:
-            found = np.geomspace(first, last, 2 * _PLACES + 1)
-            found = [float(f"{one:.{_DIGITS - 1}e}") for one in found.tolist()]
-        else:
-            found = np.arange(first, last + 0.5).round(2).tolist()
-        return [self.key.shown(one) for one in found]
+            ratios = np.geomspace(first, last, 2 * _PLACES + 1).tolist()
+            return [self.key.shown(float(f"{one:.{_DIGITS - 1}e}")) for one in ratios]
+        return [self.key.shown(one) for one in np.arange(first, last + 0.5).round(2).tolist()]
 
     def _typed(self, _attr: str, _old: Any, new: str) -> None:
         self._form.set(self, new)

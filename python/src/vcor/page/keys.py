@@ -1,4 +1,4 @@
-"""The catalogue of groups and keys for a form: what a value is, and in which unit a laboratory has it."""
+"""The catalogue of groups and keys for a form: what a value is, and its unit in a laboratory."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from ..materials.units import examples, size
 #: Units of a laboratory by SI unit; all others are SI units
 _USUAL = {"m": "mm", "K": "C", "Pa": "MPa", "kg": "g"}
 _NUMBER = re.compile(r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eEdD][-+]?\d+)?)\s*(.*)", re.S)
-#: Shorter of the ways to write a number: up to this many digits without an exponent
-_PLAIN = 9
+#: Powers of ten of numbers that are written without an exponent
+_PLAIN = -5, 9
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Key:
         """A value of a case as the page shows it, in the usual unit."""
         if value is None:
             return ""
-        if isinstance(value, bool) or isinstance(value, str):
+        if isinstance(value, (bool, str)):
             return str(value)
         if isinstance(value, list):
             return ", ".join(self.shown(one) for one in value)
@@ -72,9 +72,9 @@ class Key:
         factor, offset = _decimals(self.usual, self.unit)
         found = (Decimal(repr(value)) - offset) / factor
         found = found.normalize()
-        digits = len(found.as_tuple().digits)
-        plain = f"{found:f}"
-        return plain if len(plain.lstrip("-0.")) <= max(digits, _PLAIN) else f"{found:.{digits - 1}e}"
+        if _PLAIN[0] <= found.adjusted() <= _PLAIN[1]:
+            return f"{found:f}"
+        return f"{found:.{len(found.as_tuple().digits) - 1}e}"
 
     def written(self, text: str) -> str:
         """A text of a user in SI units, as a namelist has it.
@@ -101,8 +101,9 @@ class Key:
         if unit and (not self.unit or size(unit, self.unit) is None):
             if not re.fullmatch(r"[\w%°µ/*^.\- ]+", unit):
                 return text
+            expected = examples(self.unit) if self.unit else "a number without one"
             raise UsageError(f"{self.group}.{self.name}: found the unit '{unit:.40}', expected "
-                             f"{examples(self.unit) if self.unit else 'a number without one'}")  # fmt: skip
+                             f"{expected}")  # fmt: skip
         factor, offset = _decimals(unit or self.usual, self.unit)
         try:
             value = Decimal(re.sub("[dD]", "e", found[1].replace(",", "."))) * factor + offset
@@ -127,7 +128,7 @@ class Group:
         """Key of a name, that of a choice of the selector where there are several."""
         found = [one for one in self.keys if one.name == name]
         fits = [one for one in found if not one.models or model is None or model in one.models]
-        return (fits or [None])[0]
+        return fits[0] if fits else None
 
     def keys_of(self, model: str | None) -> Iterator[Key]:
         """Keys that a choice of the selector has."""

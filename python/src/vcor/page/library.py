@@ -1,4 +1,4 @@
-"""Materials that a page offers: those of examples/materials, with their sources, and a rigid one."""
+"""Materials that a page offers: those of examples/materials with their sources, a rigid one."""
 
 from __future__ import annotations
 

@@ -123,8 +123,14 @@ class Page:
         div.text, div.visible = text, bool(text)
 
     def _div(self, name: str, text: str = "", *classes: str) -> Div:
-        return Div(text=text, name=name, stylesheets=self._styles, css_classes=list(classes),
-                   visible=bool(text), sizing_mode="stretch_width")
+        return Div(
+            text=text,
+            name=name,
+            stylesheets=self._styles,
+            css_classes=list(classes),
+            visible=bool(text),
+            sizing_mode="stretch_width",
+        )
 
     def _button(self, label: str, press: Callable[[], None], name: str) -> Button:
         made = Button(label=label, stylesheets=self._styles, name=name)
@@ -192,8 +198,9 @@ class Page:
         """Numbers of the case, with their labels."""
         found = {}
         for address in [*_AXES, *_addresses(self.case)]:
-            value = self.case[address] if address in self.case else None
-            if isinstance(value, float) and address not in found:
+            if address in found or address not in self.case:
+                continue
+            if isinstance(self.case[address], float):
                 key = key_of(self.case, address)
                 owner = address.rpartition(".")[0]
                 found[address] = f"{owner.replace('_', ' ')}: {key.label}"
@@ -229,7 +236,9 @@ class Page:
             one.on_change("value", self._range_given)
         self._refresh_axis()
         row = Row(self._from, self._to, self._scale, styles={"flex-wrap": "wrap"})
-        return Column(self._axis, row, self._axis_fault, sizing_mode="stretch_width", name="axis_row")
+        return Column(
+            self._axis, row, self._axis_fault, sizing_mode="stretch_width", name="axis_row"
+        )
 
     def _refresh_axis(self) -> None:
         """Show the axis; another one if the case no longer has its number."""
@@ -244,7 +253,10 @@ class Page:
                 return
             key = self._span_key()
             self._axis.value = self._span.address
-            self._from.value, self._to.value = key.shown(self._span.first), key.shown(self._span.last)
+            self._from.value, self._to.value = (
+                key.shown(self._span.first),
+                key.shown(self._span.last),
+            )
             unit = f" [{'°C' if key.usual == 'C' else key.usual}]" * bool(key.usual)
             self._from.title, self._to.title = f"from{unit}", f"to{unit}"
             self._scale.value = "equal ratios" if self._span.is_log else "equal steps"
@@ -326,7 +338,9 @@ class Page:
                     continue
                 unit = {"C": "°C", "1": ""}.get(key.usual, key.usual)
                 owner = address.rpartition(".")[0].replace("_", " ")
-                words.append(f"{owner} {key.name.replace('_', ' ')} {key.shown(value)} {unit}".strip())
+                words.append(
+                    f"{owner} {key.name.replace('_', ' ')} {key.shown(value)} {unit}".strip()
+                )
             labels.append(", ".join(words) or "the same values")
         return labels
 
@@ -337,7 +351,9 @@ class Page:
         colours = COLOURS[self._figures.is_dark]
         lines = []
         for i, label in enumerate(self._labels()):
-            chip = f'<span class="chip" style="color:{colours[i]}">{"━━" if i == 0 else "╍╍"}</span>'
+            chip = (
+                f'<span class="chip" style="color:{colours[i]}">{"━━" if i == 0 else "╍╍"}</span>'
+            )
             now = "now: " if i == 0 else ""
             answer = self._answer if i == 0 else self._kept[i - 1][1]
             e = answer.numbers["cor_sphere"] if answer.numbers else math.nan
@@ -363,10 +379,9 @@ class Page:
             key = self._span_key()
             self._rows.title = f"Rows: {key.label}, e, and a bar if you like"
             found = measured.rows(self._rows.value, self._span.address, key)
-        elif found is not None and self._span is not None:
-            if self._span.address not in found.at:
-                found = Measured(faults=[*found.faults, f"found no column of {self._span.address}, "
-                                         "against which the curve is drawn"])  # fmt: skip
+        elif found is not None and self._span is not None and self._span.address not in found.at:
+            found = Measured(faults=[*found.faults, f"found no column of {self._span.address}, "
+                                     "against which the curve is drawn"])  # fmt: skip
         if found is None:
             return
         lines = "".join(f"<li>{html.escape(line)}</li>" for line in found.faults)
@@ -468,7 +483,9 @@ class Page:
         except Error as error:
             # rows without names of columns are those of the text field
             text = path.read_text(encoding="utf-8", errors="replace")
-            found = measured.rows(text, self._span.address, self._span_key()) if self._span else None
+            found = (
+                measured.rows(text, self._span.address, self._span_key()) if self._span else None
+            )
             if found is None or not found.e.size:
                 raise error
             self._of_file = None
@@ -543,8 +560,10 @@ class Page:
     def _take_parts(self) -> list[Any]:
         self._download = ColumnDataSource(data={"name": [], "text": [], "type": []})
         self._download.js_on_change("data", CustomJS(code=_SAVE))
-        self._figure = Select(options=list(take_away.FIGURES.items()), value="curve", title="Figure",
-                              stylesheets=self._styles, name="figure_kind", width=170)  # fmt: skip
+        self._figure = Select(
+            options=list(take_away.FIGURES.items()), value="curve", title="Figure",
+            stylesheets=self._styles, name="figure_kind", width=170,
+        )  # fmt: skip
         self._take_said = self._div("take_said")
         self._lines = self._div("lines")
         row = Row(
@@ -603,11 +622,14 @@ class Page:
             shell, python = take_away.commands(self.case, self._files, Path(self._folder.name))
         except Error:
             return
-        self._put(self._lines, (
-            "<details><summary>The same bits in the shell and in Python</summary>"
-            f'<h3>In the shell</h3><pre class="shell">{html.escape(shell)}</pre>'
-            f'<h3>In Python</h3><pre class="python">{html.escape(python)}</pre></details>'
-        ))
+        self._put(
+            self._lines,
+            (
+                "<details><summary>The same bits in the shell and in Python</summary>"
+                f'<h3>In the shell</h3><pre class="shell">{html.escape(shell)}</pre>'
+                f'<h3>In Python</h3><pre class="python">{html.escape(python)}</pre></details>'
+            ),
+        )
 
     # ------------------------------------------------------------------------- colours
 

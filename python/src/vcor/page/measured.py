@@ -98,7 +98,9 @@ def of_file(path: str | os.PathLike[str], case: Case) -> Measured:
     )
 
     columns, about, _ = read_columns(path, case)
-    known = {"impact.drop_height": columns[name] for name in ("drop_height",) if name in columns}
+    known = {}
+    if "drop_height" in columns:
+        known["impact.drop_height"] = columns["drop_height"]
     columns, _ = _as_velocities(os.fspath(path), dict(columns), case, NO_DIGITS)
     for name in ("cor_sphere", "cor", "resilience"):
         if name in columns:

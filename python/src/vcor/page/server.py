@@ -52,8 +52,8 @@ def start_case() -> Case:
     case = Case(_START, name="case.nml")
     for name in ("rigid as steel", "natural rubber"):
         if name not in offered():
-            raise FileError("the package has no materials to begin with, expected a case: vcor page "
-                            "CASE.nml")  # fmt: skip
+            raise FileError("the package has no materials to begin with, expected a case: vcor "
+                            "page CASE.nml")  # fmt: skip
         case.add(offered()[name].read())
     return case
 
@@ -215,7 +215,9 @@ def _server(
     settings.allowed_ws_origin = hosts
     for name in ("bokeh", "tornado"):
         logging.getLogger(name).setLevel(logging.ERROR)
-    application = Application(FunctionHandler(lambda document: _fill(document, case, files, span, folder)))
+    application = Application(
+        FunctionHandler(lambda document: _fill(document, case, files, span, folder))
+    )
     try:
         server = Server(
             {"/": application}, io_loop=loop, port=number, address=_ADDRESS,
@@ -241,7 +243,9 @@ def _fill(
     """Make the document of a browser tab."""
     page = Page(document, case.copy(), files, span, folder)
     scheme = ColumnDataSource(data={"dark": []}, name="scheme")
-    scheme.on_change("data", lambda _a, _o, new: page.set_dark(bool(new["dark"] and new["dark"][0])))
+    scheme.on_change(
+        "data", lambda _a, _o, new: page.set_dark(bool(new["dark"] and new["dark"][0]))
+    )
     holder = Div(text="", visible=False, name="scheme_holder")
     holder.tags = [scheme]
     document.add_root(holder)
@@ -250,6 +254,8 @@ def _fill(
     document.template = Environment(autoescape=False).from_string(  # noqa: S701
         (_PARTS / "live.html").read_text(encoding="utf-8")
     )
-    style = "".join((_PARTS / name).read_text(encoding="utf-8") for name in ("page.css", "live.css"))
+    style = "".join(
+        (_PARTS / name).read_text(encoding="utf-8") for name in ("page.css", "live.css")
+    )
     script = (_PARTS / "live.js").read_text(encoding="utf-8")
     document.template_variables.update(page_style=style, page_script=script)

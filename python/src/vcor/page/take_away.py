@@ -8,6 +8,7 @@ import re
 import threading
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -104,8 +105,8 @@ def _values(text: str) -> dict[str, str]:
 def differences(case: Case, other: Case) -> list[str]:
     """Addresses at which two cases differ, those of the first one first."""
     one, two = _values(case.text()), _values(other.text())
-    return [key for key in {**one, **two}
-            if one.get(key) != two.get(key) and not key.startswith(("case.", "output."))]  # fmt: skip
+    found = [key for key in {**one, **two} if one.get(key) != two.get(key)]
+    return [key for key in found if not key.startswith(("case.", "output."))]
 
 
 def _quoted(word: str) -> str:
@@ -162,16 +163,16 @@ def svg(kind: str, cases: Sequence[Case], labels: Sequence[str], span: Span | No
             if span is None:
                 raise InputError("there is no number to draw e against")
             x = span.values()
-            sources = []
+            sources: list[Any] = []
             for case in cases:
                 names = ["cor_sphere", "validity", "validity_cause", "status"]
                 found, _ = case._solve([span.address], x[:, None], names, 0)
                 sources.append(case._dataset(names, found, {span.address: (span.address, x)}))
-            kind, options = "sweep", {"quantities": ["cor_sphere"], "log": "x" * span.is_log}
+            kind, quantities, log = "sweep", ["cor_sphere"], "x" * span.is_log
         else:
-            sources, options = list(cases), {}
+            sources, quantities, log = list(cases), None, None
         legends = list(labels) if len(cases) > 1 else []
-        made = plot.figure(sources, kind=kind, legends=legends, **options)
+        made = plot.figure(sources, kind=kind, legends=legends, quantities=quantities, log=log)
         with mpl.style.context(plot.STYLE):
             made.savefig(out, format="svg", metadata={"Date": None})
     return out.getvalue()
