@@ -305,7 +305,7 @@ class Page:
                        sizing_mode="stretch_width", name="kept_row")]  # fmt: skip
 
     def _keep(self) -> None:
-        if self._answer.numbers is None or not self._answer.is_whole:
+        if self._answer.numbers is None:
             return
         if len(self._kept) == MOST_KEPT:
             del self._kept[0]
