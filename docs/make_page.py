@@ -37,6 +37,7 @@ def live(driver):
     shown.get_by_text("now: impact temperature 5").wait_for()
     shown.locator("textarea").fill(LIVE_ROWS)
     shown.locator("textarea").blur()
+    shown.evaluate("scrollTo(0, 0); document.getElementById('inputs').scrollTo(0, 0)")
     # the curves are drawn in the next frame
     shown.wait_for_timeout(1000)
     shown.screenshot(path=ROOT / "docs" / "live.png")
