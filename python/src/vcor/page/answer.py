@@ -7,7 +7,7 @@ computes them can leave what nobody waits for any more.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from ctypes import byref, c_void_p
+from ctypes import byref, c_double, c_void_p
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,6 +114,16 @@ def parts(case: Case, span: Span | None, others: Sequence[Case]) -> Iterator[Ans
         yield from _curves(made, [case, *others], span)
     made.is_whole = True
     yield made
+
+
+def exact(case: Case) -> float:
+    """Coefficient of restitution of the sphere with exact mechanics, nan without a result."""
+    found = c_double()
+    try:
+        call("vcor_exact", case._pointer, byref(found))
+    except Error:
+        return np.nan
+    return found.value
 
 
 def sentence(numbers: Mapping[str, float | str]) -> tuple[str, str]:

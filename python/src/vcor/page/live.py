@@ -35,7 +35,17 @@ from .._library import Error, InputError, NumericalError, UsageError
 from ..case import Case
 from ..sources import material_case
 from . import measured, take_away
-from .answer import Answer, Span, height, materials_of, parts, path_of, sentence, start_of
+from .answer import (
+    Answer,
+    Span,
+    exact,
+    height,
+    materials_of,
+    parts,
+    path_of,
+    sentence,
+    start_of,
+)
 from .figures import COLOURS, MOST_KEPT, Figures
 from .form import Form
 from .keys import groups, key_of
@@ -76,7 +86,7 @@ class Page:
     ) -> None:
         self._document, self._files = document, list(files)
         self._folder = tempfile.TemporaryDirectory(dir=folder)
-        self._worker = Worker()
+        self._worker, self._beside = Worker(), Worker()
         self._style = InlineStyleSheet(css=Path(__file__).with_name("widgets.css").read_text())
         self._styles = [self._style]
         self._figures = Figures()
@@ -104,6 +114,7 @@ class Page:
 
     def _end(self, _context: Any) -> None:
         self._worker.end()
+        self._beside.end()
         self._folder.cleanup()
 
     def _later(self, show: Callable[..., None], *what: Any) -> None:
@@ -142,13 +153,14 @@ class Page:
     def _answer_parts(self) -> list[Any]:
         self._e = self._div("answer")
         self._numbers = self._div("numbers")
-        return [self._e, self._numbers]
+        self._exact = self._div("exact")
+        return [self._e, self._exact, self._numbers]
 
     def _changed(self) -> None:
         """Ask for the answer to the case as it is now."""
         self._number += 1
         number = self._number
-        self._e.css_classes = ["stale"]
+        self._e.css_classes = self._exact.css_classes = ["stale"]
         if self.form.faults:
             return
         case = self.case.copy()
@@ -175,6 +187,7 @@ class Page:
             if answer.code != NumericalError.code:
                 line = self.form.blame(answer.fault)
             self._put(self._e, _no_answer(line))
+            self._put(self._exact, "")
             self._e.css_classes = []
             self._put(self._numbers, "")
             return
@@ -191,6 +204,23 @@ class Page:
         if number != self._lines_of:
             self._lines_of = number
             self._show_lines()
+            self._ask_exact(number)
+
+    def _ask_exact(self, number: int) -> None:
+        """Ask for e with exact mechanics, in a thread of its own: it takes longer."""
+        case = self.case.copy()
+        if case._has_mesh:
+            self._put(self._exact, "")
+            return
+        self._beside.ask(lambda: iter([exact(case)]), lambda e: self._later(
+            self._show_exact, number, e))  # fmt: skip
+
+    def _show_exact(self, number: int, e: float) -> None:
+        if number != self._number:
+            return
+        text = f'<p class="exact">With exact mechanics e = {e:.{_DIGITS}f}</p>'
+        self._put(self._exact, text if math.isfinite(e) else "")
+        self._exact.css_classes = []
 
     # --------------------------------------------------------------------------- curve
 

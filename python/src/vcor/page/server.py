@@ -171,6 +171,8 @@ def serve(
         span = Span(axis.address, first, last, axis.is_log)
     # a browser that goes away ends its own connection, not the program
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    for one in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(one, signal.default_int_handler)
     own = [] if values else list(files)
     with tempfile.TemporaryDirectory(prefix="vcor-page-") as folder:
         server = _server(case, own, span, port, IOLoop.current(), Path(folder))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import tempfile
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,14 +33,12 @@ def case_text(case: Case, folder: Path) -> str:
     case
         The case.
     folder
-        A folder of the page for a moment's file: data files then stand there by their whole paths.
+        Where a file may stand for a moment, so that data files have their whole paths.
     """
-    path = folder / "case.nml"
-    case.save(path)
-    try:
+    with tempfile.TemporaryDirectory(dir=folder) as own:
+        path = Path(own) / "case.nml"
+        case.save(path)
         return path.read_text(encoding="utf-8")
-    finally:
-        path.unlink()
 
 
 def name_of(case: Case) -> str:
