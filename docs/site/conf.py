@@ -108,7 +108,7 @@ def prepare(_app, name, source):
 def finish(app, error):
     """Figures that pages show by HTML, which Sphinx does not see."""
     if error is None:
-        for path in SOURCE.rglob("*.svg"):
+        for path in [*SOURCE.rglob("*.svg"), *SOURCE.glob("*.png")]:
             target = Path(app.outdir) / path.relative_to(SOURCE)
             target.parent.mkdir(exist_ok=True, parents=True)
             shutil.copy(path, target)
