@@ -44,16 +44,12 @@ contains
          + int(min(3.0_wp*radius/face%thickness, real(most_for_layer, wp)))
    end function mesh_of
 
-   !> Mesh with half of the steps and twice the elements of hats. By it the coefficient of
-   !> restitution changes by half of the error of the hats if that is of first order, as in fast
-   !> impacts, where the edge of the contact runs as fast as the waves, and by three quarters if of
-   !> second order
+   !> Mesh with twice the elements of hats
    pure function with_more_hats(mesh) result(wide)
       type(mesh_t), intent(in) :: mesh
       type(mesh_t) :: wide
 
       wide = mesh
-      wide%steps = mesh%steps/2
       wide%hats = 2*mesh%hats - 1
    end function with_more_hats
 
