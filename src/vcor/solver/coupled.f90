@@ -68,18 +68,23 @@ module vcor_solver_coupled
       procedure :: note
    end type search_t
 
-   !> The finest mesh, and its steps
+   !> The finest mesh, and its steps: a second or two of an impact
    integer, parameter :: finest = 4, most_steps = first_steps*2**finest
-   !> Operations that an impact may take, some ten seconds
+   !> Operations that an impact may take, some ten seconds: that of a plate whose contact lasts for
+   !> hundreds of time scales
    real(wp), parameter :: most_work = 4.0e10_wp
-   !> Ratio of the errors of two levels at the best
+   !> Ratio of the errors of two levels at the best: that of third order, which extrapolation leaves
    real(wp), parameter :: best_ratio = 8.0_wp
-   !> Steps to the time scale of a contact that resolve it
+   !> Steps to the time scale of a contact that resolve it: longer ones have shown a sphere that
+   !> leaves a nearly fluid plate in the middle of the contact
    real(wp), parameter :: resolved = 8.0_wp
    !> Relative error of the largest force from which it is computed again, if it comes before this
-   !> part of the contact or of the window
+   !> part of the contact or of the window: a later one has 60 steps before it, and a shorter window
+   !> would not resolve it much better
    real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
-   !> Ratios to which window and radius are rounded up, and their margin
+   !> Ratios to which window and radius are rounded up, so that impacts that differ by less share
+   !> kernels, and their margin: of the contact that the search has found, by steps four times as
+   !> long
    real(wp), parameter :: window_ratio = 2.0_wp**0.125_wp, radius_ratio = 2.0_wp**0.25_wp
    real(wp), parameter :: margin = 1.04_wp
 
@@ -117,7 +122,8 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      ! for contact time and largest force, which nothing refines
+      ! for contact time and largest force, which nothing refines: of 240 random impacts all but one
+      ! contact time and two forces are then within three stated errors
       real(wp), parameter :: careful = 2.0_wp
       type(pair_t) :: before, now
       type(course_t) :: course
@@ -234,7 +240,8 @@ contains
       type(course_t), intent(out) :: course
       type(error_t), allocatable, intent(out) :: error
 
-      ! growth of a window or row that is too short, and how much longer than expected they begin
+      ! growth of a window or row that is too short, and how much longer than expected they begin: a
+      ! march of 40 steps more or less
       real(wp), parameter :: growth = 2.0_wp**0.5_wp, spare = 1.25_wp
       type(course_t) :: lasting
       type(mesh_t) :: mesh
@@ -330,10 +337,11 @@ contains
    !> change on the mesh before: at half of its steps, and if that leaves too much unknown at all of
    !> them too, extrapolated.
    !>
-   !> In fast impacts, where the edge of the contact runs as fast as the waves, the hats are of first
-   !> order, otherwise of second or more. The finer mesh has r times the elements of the one before,
-   !> 9/7 to 13/11, and errs by r^-n/(1 - 2^-n) times the change: by all of it at order 1.6, and by
-   !> nothing where they converge fast. So half of it is added, and as much is unknown
+   !> In fast impacts, where the edge of the contact runs as fast as the waves, the hats are of
+   !> first order, otherwise of second or more. The finer mesh has r times the elements of the one
+   !> before, 9/7 to 13/11, and errs by r^-n/(1 - 2^-n) times the change: by all of it at order 1.6,
+   !> and by nothing where they converge fast. So half of it is added, and as much is unknown; of a
+   !> change that is extrapolated itself, all of it
    subroutine find_hats_error(self, impact, before, hats_error, error)
       type(coupled_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact

@@ -140,7 +140,8 @@ contains
          end if
          if (self%grows) then
             do j = 1, self%corners
-               self%pressure(j) = (here + slope*(raised(self%place(j), n) - at) - self%dent(j))/local
+               self%pressure(j) = (here + slope*(raised(self%place(j), n) - at) &
+                  - self%dent(j))/local
                call chain%insert(self%place(j), self%pressure(j))
             end do
             call chain%insert(self%radius, 0.0_wp)

@@ -1,4 +1,4 @@
-!> Meshes of an impact: steps, springs and hats of each level, and the scales of its window and radius
+!> Meshes of an impact: steps, springs and hats of each level, and scales of its window and radius
 module vcor_solver_coupled_plan
    use vcor_impact_face, only : face_t
    use vcor_impact_problem, only : impact_t
@@ -37,6 +37,7 @@ contains
       real(wp), intent(in) :: radius
       type(mesh_t) :: mesh
 
+      ! for a contact of eight thicknesses; with more a kernel takes seconds
       integer, parameter :: most_for_layer = 24
 
       mesh = mesh_t(first_steps*2**level, nint(192.0_wp*1.5_wp**level), 8 + 2*level, window, radius)
