@@ -83,7 +83,7 @@ contains
       real(wp), allocatable :: system(:, :), more(:)
       integer, allocatable :: pivots(:)
       integer :: round, i, n, wrong
-      logical :: regular, pushes
+      logical :: regular
 
       n = 0
       do round = 1, most
@@ -103,8 +103,7 @@ contains
          end if
          wrong = 0
          do i = 1, size(self%gap)
-            pushes = self%compression(i) > 0.0_wp
-            if (pushes .eqv. self%pushes(i)) cycle
+            if ((self%compression(i) > 0.0_wp) .eqv. self%pushes(i)) cycle
             wrong = i
             if (round <= together) call self%change(kernel, i)
          end do

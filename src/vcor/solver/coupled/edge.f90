@@ -107,7 +107,9 @@ contains
       real(wp), intent(out) :: missing(:)
 
       type(chain_t) :: chain
-      real(wp) :: q(size(compression)), rise, fall, here, slope
+      ! pressures from the first spring that the chain needs to the one after the last that pushes
+      real(wp), allocatable :: q(:)
+      real(wp) :: rise, fall, here, slope, at
       integer :: first, i, j
 
       missing = 0.0_wp
@@ -119,35 +121,38 @@ contains
                  right => row%right(i))
          self%radius = x(i)
          if (i == size(x)) return
-         q = compression/local
          first = i - 1 + modulo(i, 2)
+         j = max(1, first - 1)
+         allocate (q(j:i + 1), source=compression(j:i + 1)/local)
          chain%power = n
          do j = max(1, first - 1), i
             call chain%insert(x(j), q(j))
          end do
-         ! of x^n to the next spring
-         rise = x(i + 1)**n - x(i)**n
+         ! x^n, and its rise to the next spring
+         at = raised(x(i), n)
+         rise = raised(x(i + 1), n) - at
          if (allocated(self%past) .and. i >= touched) then
             ! approach without dents
             here = compression(i) + dent(i)
             slope = (compression(i + 1) - here)/rise
-            self%radius = (x(i)**n - here/slope)**(1.0_wp/n)
+            self%radius = root(at - here/slope, n)
             self%grows = self%radius >= self%before
          end if
          if (self%grows) then
             do j = 1, self%corners
-               self%pressure(j) = (here + slope*(self%place(j)**n - x(i)**n) - self%dent(j))/local
+               self%pressure(j) = (here + slope*(raised(self%place(j), n) - at) &
+                  - self%dent(j))/local
                call chain%insert(self%place(j), self%pressure(j))
             end do
             call chain%insert(self%radius, 0.0_wp)
          else
             fall = (q(i) - q(i + 1))/rise
             if (allocated(self%past) .and. i > 1) then
-               if (pushes(i - 1)) fall = (q(i - 1) - q(i))/(x(i)**n - x(i - 1)**n)
+               if (pushes(i - 1)) fall = (q(i - 1) - q(i))/(at - raised(x(i - 1), n))
             end if
             self%radius = x(i + 1)
-            if (q(i) < fall*rise) self%radius = (x(i)**n + q(i)/fall)**(1.0_wp/n)
-            call chain%insert(self%radius, q(i) - fall*(self%radius**n - x(i)**n))
+            if (q(i) < fall*rise) self%radius = root(at + q(i)/fall, n)
+            call chain%insert(self%radius, q(i) - fall*(raised(self%radius, n) - at))
          end if
          missing(hat:hat + 1) = [1.0_wp - right, right]*(2.0_wp*chain%integral(0.5_wp*(x(first) &
             + x(first + 1) - weight)) - weight*sum(q(first:i)))
@@ -216,7 +221,7 @@ contains
       !> The integral [N]
       real(wp) :: integral
 
-      real(wp) :: from, slope, q
+      real(wp) :: from, slope, q, at, before
       integer :: i
 
       integral = 0.0_wp
@@ -226,12 +231,40 @@ contains
             if (x(i + 1) <= start .and. i + 1 < self%points) cycle
             from = x(i)
             if (i == 1 .or. from < start) from = start
-            slope = (self%q(i + 1) - self%q(i))/(x(i + 1)**n - x(i)**n)
-            q = self%q(i) + slope*(from**n - x(i)**n)
-            integral = integral + (x(i + 1) - from)*(q - slope*from**n) &
-               + slope*(x(i + 1)**(n + 1.0_wp) - from**(n + 1.0_wp))/(n + 1.0_wp)
+            before = raised(x(i), n)
+            slope = (self%q(i + 1) - self%q(i))/(raised(x(i + 1), n) - before)
+            at = raised(from, n)
+            q = self%q(i) + slope*(at - before)
+            integral = integral + (x(i + 1) - from)*(q - slope*at) &
+               + slope*(x(i + 1)*raised(x(i + 1), n) - from*at)/(n + 1.0_wp)
          end do
       end associate
    end function integral
+
+   !> x^n, of a sphere the square
+   elemental function raised(x, n)
+      !> The number, >= 0, and the exponent
+      real(wp), intent(in) :: x, n
+      real(wp) :: raised
+
+      if (n > 2.0_wp .or. n < 2.0_wp) then
+         raised = x**n
+      else
+         raised = x**2
+      end if
+   end function raised
+
+   !> x^(1/n)
+   elemental function root(x, n)
+      !> The number, >= 0, and the exponent
+      real(wp), intent(in) :: x, n
+      real(wp) :: root
+
+      if (n > 2.0_wp .or. n < 2.0_wp) then
+         root = x**(1.0_wp/n)
+      else
+         root = sqrt(x)
+      end if
+   end function root
 
 end module vcor_solver_coupled_edge

@@ -73,7 +73,7 @@ contains
       class(mesh_t), intent(in) :: self
       real(wp) :: operations
 
-      ! of the response
+      ! of the response, by its additions, products, quotients and roots
       real(wp), parameter :: response = 100.0_wp
 
       operations = real(self%steps, wp)**2*(response + 1.5_wp*real(self%hats, wp)**2 &
@@ -119,7 +119,7 @@ contains
       !> Error of code `error_internal`
       type(error_t), allocatable, intent(out) :: error
 
-      ! the part of the first weight from which the springs are elastic
+      ! the part of the first weight from which the springs are elastic: weights have errors of it
       real(wp), parameter :: negligible = 1.0e-7_wp
       real(wp) :: found(1, 0:mesh%steps - 1)
 

@@ -1,5 +1,5 @@
-!> What earlier steps of a march have left: dents of the springs and bends of the hats, sums over all
-!> lags, which take most of its operations
+!> What earlier steps of a march have left: dents of the springs and bends of the hats, sums over
+!> all lags, which take most of its operations
 !>
 !> For a block of steps what the steps before it have left is one product of matrices, which reads
 !> weights and forces once for the block; for each step sums over the block itself remain.

@@ -29,7 +29,9 @@ contains
 
       ! part of the largest value down to which it is fitted: the top of a sine is within 1e-7
       real(wp), parameter :: high = 0.95_wp
-      integer, parameter :: degree = 4, iterations = 8
+      integer, parameter :: degree = 4
+      ! of Newton's method, from a step of the top or less
+      integer, parameter :: iterations = 8
       ! coefficients, and the first column of the inverse of `products`
       real(wp) :: c(0:degree), unit(0:degree), both(0:degree, 2)
       real(wp) :: products(0:degree, 0:degree), power(0:degree), x, misfit

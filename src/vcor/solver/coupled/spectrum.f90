@@ -35,7 +35,7 @@ module vcor_solver_coupled_spectrum
    !> Nodes of a panel
    integer, parameter :: panel_nodes = 10
    !> Length of a panel, or of a part of it, over which the products of hats are integrated, times
-   !> the radius: these are waves cos(2 k a), 12 radians of which ten Gauss nodes integrate to 1e-9
+   !> the radius: these are waves cos(2 k a), of which ten Gauss nodes integrate 12 radians to 3e-9
    real(wp), parameter :: integrated = 6.0_wp
 
    !> The response
@@ -186,10 +186,10 @@ contains
    !> Divide the wavenumbers into panels, short where the response of any frequency has a pole
    !> nearby and where a layer resonates.
    !>
-   !> A panel over which the products of hats are integrated at once integrates the response to twice
-   !> as many digits as a polynomial through its nodes has. A longer one has the response as that
-   !> polynomial, so that its poles, at k = 0 too, must be farther from it: with the distance x over
-   !> half of the length, the polynomial errs by (x + sqrt(x^2 +- 1))^-10, 1e-10 at x = 5
+   !> A panel over which the products of hats are integrated at once integrates the response to
+   !> twice as many digits as a polynomial through its nodes has. A longer one has the response as
+   !> that polynomial, so that its poles, at k = 0 too, must be farther from it: with the distance x
+   !> over half of the length, the polynomial errs by (x + sqrt(x^2 +- 1))^-10, 1e-10 at x = 5
    pure subroutine add_panels(self, face, p, last)
       class(spectrum_t), intent(inout) :: self
       type(face_t), intent(in) :: face
@@ -198,7 +198,8 @@ contains
       !> Wavenumber at which the last panel ends or earlier [1/m]
       real(wp), intent(in) :: last
 
-      ! with the distance of a pole over half of the length 2.6 and 5, and at k = 0
+      ! with the distance of a pole over half of the length 2.6 and 5, and the length over the
+      ! distance of the panel from k = 0
       real(wp), parameter :: near(2) = [0.77_wp, 0.4_wp], growth(2) = [0.7_wp, 0.5_wp]
       ! wavenumber times thickness up to which a layer resonates
       real(wp), parameter :: resonant = 25.0_wp
