@@ -10,6 +10,8 @@ the directions of the covariance. Its error is measured at further ones.
 from __future__ import annotations
 
 import math
+import time
+import warnings
 
 import numpy as np
 from scipy.stats import qmc
@@ -32,6 +34,9 @@ ROUNDS, REST = 5, 1.0
 FRESH, ACCURATE = 4, 0.1
 #: Rounds of fitting, in each of which the points are doubled
 FITS = 3
+#: How often a fit solves all impacts beside the points of corrections, of which it has two of first
+#: order, and the time that is announced [s]
+ROWS, LONG = 20, 60.0
 
 
 class Corrected:
@@ -54,7 +59,16 @@ class Corrected:
         #: Impacts that were solved, of these those that measure the error, and that: root mean
         #: square in parts of the errors of the data
         self.solved, self.fresh, self.error = 0, 0, 0.0
+        begin = time.perf_counter()
         self.set_errors(problem.guess)
+        rows = ROWS + 4 * (k + 1) + _points_at_first(self.uniform) + FRESH
+        seconds = rows * (time.perf_counter() - begin)
+        if seconds > LONG:
+            warnings.warn(
+                f"{problem.case.name}: {rows * self.impacts} exact impacts take some "
+                f"{math.ceil(seconds / 60)} min; fewer data, or means of repeated ones, take less",
+                stacklevel=4,
+            )
 
     def set_errors(self, x: Floats) -> None:
         """Take the errors of the exact solution at a point."""
@@ -163,7 +177,7 @@ def _refined(
 ) -> tuple[Floats, float] | None:
     """The solution with corrections of higher order; None if they are not good enough."""
     k = len(x)
-    number = 2 ** math.ceil(math.log2(POINTS_PER_TERM * len(made.uniform.terms(2))))
+    number = _points_at_first(made.uniform)
     design, random = qmc.Sobol(k, seed=np.random.default_rng(seed)), np.random.default_rng(seed)
     made.set_errors(x)
     for _ in range(FITS):
@@ -176,6 +190,11 @@ def _refined(
             return x, chi2
         number *= 2
     return None
+
+
+def _points_at_first(coordinates: Coordinates) -> int:
+    """Points to which terms of second degree are fitted."""
+    return int(2 ** math.ceil(math.log2(POINTS_PER_TERM * len(coordinates.terms(2)))))
 
 
 def _root(problem: Problem, x: Floats) -> Floats:
