@@ -307,3 +307,66 @@ def test_paper_cases_keep_their_samples():
     """Cheap mechanics are solved at every sample."""
     found = vcor.propagate(PAPER / "sls.nml", {"rubber.beta": "5%"}, samples=128)
     assert found.solved == found.samples and found.fresh == 0 and "correction" not in str(found)
+
+
+def exact_drops(velocities, **settings):
+    """A case with exact mechanics and its data without noise, with errors of 1 %."""
+    case = vcor.read(EXAMPLES / "sls_exact.nml")
+    for address, value in settings.items():
+        case[address.replace("__", ".")] = value
+    names = ["cor_sphere", "contact_time"]
+    found = case.points({"impact.velocity": velocities}, names)
+    data = {"velocity": velocities}
+    for name in names:
+        data |= {name: found[name].values, f"{name}_sigma": 0.01 * found[name].values}
+    return case, data
+
+
+def test_identification_with_exact_mechanics():
+    """The parameters that data were made with, at the minimum of exact impacts, and how good."""
+    case, data = exact_drops(np.array([0.1, 0.3, 0.9]))
+    free = ["rubber.glassy_modulus", "rubber.beta"]
+    guess = case.copy()
+    guess["rubber.glassy_modulus"], guess["rubber.beta"] = 1e7, 1800.0
+    found = vcor.identify(guess, data, free)
+    for one in found.estimates:
+        # noise-free data: what is off is the error of the correction and of the minimum
+        assert abs(one.value - case[one.address]) < 0.1 * one.standard_error
+        low, high = one.interval_95
+        assert low < case[one.address] < high
+    assert 0 < found.fresh < found.solved < 400 and 0 < found.correction < 0.1
+    assert found.chi2 < 0.1
+    assert f"with a correction from {found.solved} exact impacts" in str(found)
+    assert found.as_dict()["solved"] == found.solved
+    # the band is that of the exact impacts
+    middle = (np.array(found.band["low"]) + np.array(found.band["high"])) / 2
+    case["rubber.glassy_modulus"], case["rubber.beta"] = (found[one] for one in free)
+    speed = found.band["velocity"][20]
+    wanted = case.solve({"impact.velocity": speed}, ["cor"])["cor"]
+    name = "cor_sphere" if "cor_sphere" in found.band else "cor"
+    assert found.band[name][20] == pytest.approx(wanted, abs=1e-4)
+    assert middle[20] == pytest.approx(wanted, abs=1e-4)
+
+
+def test_cheap_impacts_are_identified_without_a_correction():
+    case = thin_case("paper/sls.nml")
+    data = {"velocity": [1.0, 5.0], "cor": [0.5, 0.43]}
+    found = vcor.identify(case, data, ["rubber.beta"], errors={"cor": 0.02})
+    assert found.solved == 0 and "correction" not in str(found)
+
+
+@pytest.mark.skipif("VCOR_ALL_TESTS" not in os.environ, reason="takes long: scripts/test_long.sh")
+def test_exact_intervals_are_those_of_solved_impacts(monkeypatch):
+    """Without a correction, which takes minutes."""
+    case, data = exact_drops(np.array([0.1, 0.9]))
+    free = ["rubber.glassy_modulus", "rubber.beta"]
+    one = vcor.identify(case, data, free)
+    monkeypatch.setattr("vcor.materials.identification.corrected", lambda *_: None)
+    two = vcor.identify(case, data, free)
+    assert one.solved > 0 == two.solved
+    for mine, wanted in zip(one.estimates, two.estimates, strict=True):
+        assert abs(mine.value - wanted.value) < 0.05 * wanted.standard_error
+        assert mine.standard_error == pytest.approx(wanted.standard_error, rel=0.02)
+        for key in ("interval_68", "interval_95"):
+            ends = np.array(getattr(mine, key)) - getattr(wanted, key)
+            assert (np.abs(ends) < 0.05 * wanted.standard_error).all()

@@ -159,7 +159,7 @@ def _cores(threads: int | None) -> int:
     return threads_of(threads) or len(os.sched_getaffinity(0))
 
 
-def _thin(case: Case) -> dict[str, Case]:
+def thin_cases(case: Case) -> dict[str, Case]:
     """The case with thin mechanics that it can have, by their waves."""
     made = {}
     for waves in THIN_WAVES:
@@ -217,7 +217,7 @@ class _Corrected:
         self.design = qmc.Sobol(len(self.coordinates.uniform), seed=np.random.default_rng(seed))
         random = np.random.default_rng([seed, 1])
         self.fresh = lambda n: random.random((n, len(self.coordinates.uniform)))
-        self.thin = _thin(self.case)
+        self.thin = thin_cases(self.case)
         #: Results of thin mechanics at the samples of each plan, where they were needed
         self.of_samples: dict[str, list[Floats]] = {}
         self.solved, self.seconds = 0, 0.0

@@ -29,6 +29,7 @@ from ..progress import progress_bar
 from .advice import next_measurement, not_determined, probe, product
 from .data import Columns, Units, add_data_options, columns_option
 from .fit import fit
+from .identification_exact import Corrected, corrected
 from .identification_report import figure, report
 from .identified import DATUM, Estimate, Identified, Tangent
 from .limits import BESIDE, OPEN, Better, Fit, Interval
@@ -170,7 +171,8 @@ def identify(
         sharpen(case, _deserved(blocks, scalars(errors)))
     with progress_bar(None, None) as bar, one_thread():
         problem = Problem(case, free, blocks, scalars(errors), bar)
-        best, limits = _determined(problem, *problem.best(seed))
+        start = corrected(problem, seed) if case._has_mesh else None
+        best, limits = _determined(problem, *(start or problem.best(seed)))
         return _result(problem, best, limits, model or "", given)
 
 
@@ -262,7 +264,15 @@ def _result(
         loss_tangents=tuple(_tangents(problem, x, covariance)),
         model=model,
         validity=_validity(problem, case),
+        **_of_correction(problem.corrected),
     )
+
+
+def _of_correction(made: Any) -> dict[str, Any]:
+    """What is said of a correction of impacts."""
+    if not isinstance(made, Corrected):
+        return {}
+    return {"solved": made.solved, "fresh": made.fresh, "correction": made.error}
 
 
 def _correlated(problem: Problem, x: Floats, derivatives: Floats) -> tuple[str, ...]:
@@ -314,11 +324,15 @@ def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[flo
     trial = probe(problem.case, grid, name)
 
     def cor(steps: Floats) -> Floats:
-        return trial.predict(problem.case, problem.free, np.exp(x + steps), np.exp(x))
+        return trial.predict(problem.quick, problem.free, np.exp(x + steps), np.exp(x))
 
     slope = slopes(cor, len(x), STEP)
     deviation = np.sqrt(np.einsum("ij,jk,ik->i", slope, covariance, slope))
     middle, half = cor(np.zeros((1, len(x))))[0], float(ndtri(0.975)) * deviation
+    if problem.corrected:
+        # thin mechanics have the width in parts of the coefficient
+        exact = trial.predict(problem.case, problem.free, np.exp(x)[None])[0]
+        middle, half = exact, half * exact / middle
     columns = {"velocity": grid, name: middle, "low": middle - half, "high": middle + half}
     good = np.isfinite(middle)
     return {name: column[good].tolist() for name, column in columns.items()}

@@ -85,6 +85,10 @@ def report(found: Identified) -> str:
         warm = "" if math.isnan(tangent.temperature) else f", {tangent.temperature:.2f} K"
         where = f"{tangent.velocity:.4g} m/s{warm} ({tangent.frequency:.4g} rad/s)"
         lines.append(f"  {tangent.value:.4g} +- {tangent.standard_error:.2g} at {where}")
+    if found.solved:
+        lines += ["", f"by thin mechanics with a correction from {found.solved} exact impacts, "
+                  f"{found.fresh} of which it does not know: there it is off by "
+                  f"{100 * found.correction:.2g} % of the errors of the data"]  # fmt: skip
     lines += ["", f"validity: {found.validity}", f"what would help most: {found.advice}", ""]
     sources, kelvins = _sources(found), {row["temperature"] for row in found.data}
     several, heated = len(sources) > 1, not all(map(math.isnan, kelvins))

@@ -81,6 +81,12 @@ class Identified:
     taken: tuple[str, ...] = ()
     #: Files whose misfits are not noise: neighbours are correlated
     alike: tuple[str, ...] = ()
+    #: Exact impacts that a correction of thin mechanics was fitted to and tested with, 0: all were
+    #: solved; how many of them it does not know, and its error there, root mean square in parts of
+    #: the errors of the data
+    solved: int = 0
+    fresh: int = 0
+    correction: float = 0.0
     #: Whether frequencies of moduli were given in Hz, in which the figure has them, not in rad/s
     hertz: bool = field(default=False, repr=False)
 
@@ -114,6 +120,9 @@ class Identified:
             bic=self.bic,
             window=self.window,
             validity=self.validity,
+            solved=self.solved,
+            fresh=self.fresh,
+            correction=self.correction,
             loss_tangents=[dataclasses.asdict(one) for one in self.loss_tangents],
             next=self.advice,
             data=self.data,

@@ -7,7 +7,7 @@ import re
 import time
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -35,6 +35,17 @@ FARTHEST = math.log(1e12)
 VANISHED = 1e-3
 #: Rounds in which the errors of the data follow the fit, and their change that ends them
 ROUNDS, SETTLED = 8, 0.01
+
+
+class Corrected(Protocol):
+    """Impacts of a problem by corrected thin mechanics."""
+
+    thin: Case
+    #: Errors of the exact data of each block of impacts
+    errors: list[Floats]
+
+    def predict(self, block: Impacts, values: Floats) -> Floats:
+        """Data of a block for each row of values, shape (rows, n)."""
 
 
 class Problem:
@@ -66,6 +77,8 @@ class Problem:
             for reach in (-FARTHEST, FARTHEST)
         )
         self._last = np.empty(0), np.empty(0)
+        #: Thin mechanics, corrected, in the place of those of the case
+        self.corrected: Corrected | None = None
         self._check_count()
         #: Relative scatter of the data, if it is estimated
         self.scatter = 1.0
@@ -94,7 +107,28 @@ class Problem:
                 line += f", or their errors: {option('errors', {self.quantity[0]: 0.01})}"
             raise InputError(line)
 
+    def correct(self, corrected: Corrected | None) -> None:
+        """Predict impacts by corrected thin mechanics from here on, or by the case."""
+        self.corrected, self._last = corrected, (np.empty(0), np.empty(0))
+
+    @property
+    def quick(self) -> Case:
+        """The case, or its thin mechanics if these are corrected."""
+        return self.corrected.thin if self.corrected else self.case
+
+    def parts(self, values: Floats) -> list[Floats]:
+        """Numbers of all data by their blocks."""
+        ends = np.cumsum([len(block.value) for block in self.blocks])[:-1]
+        return np.split(values, ends)
+
     def _errors_of_model(self, x: Floats) -> Floats:
+        if self.corrected:
+            own = iter(self.corrected.errors)
+            return np.concatenate([
+                next(own) if isinstance(block, Impacts)
+                else block.error_of_model(self.case, self.free, np.exp(x))
+                for block in self.blocks
+            ])  # fmt: skip
         errors = [block.error_of_model(self.case, self.free, np.exp(x)) for block in self.blocks]
         return np.concatenate(errors)
 
@@ -102,7 +136,12 @@ class Problem:
         """Data for each row of x, shape (rows, data), on the meshes that suit the point `near`."""
         values, middle = np.exp(x), None if near is None else np.exp(near)
         self.bar.update(len(x) * sum(len(impacts.velocity) for impacts in self.impacts))
-        return np.hstack([b.predict(self.case, self.free, values, middle) for b in self.blocks])
+        return np.hstack([
+            self.corrected.predict(block, values)
+            if self.corrected and isinstance(block, Impacts)
+            else block.predict(self.case, self.free, values, middle)
+            for block in self.blocks
+        ])  # fmt: skip
 
     def residuals(self, x: Floats) -> Floats:
         """Residuals at one point, shape (data,); the last data are kept."""
@@ -125,7 +164,7 @@ class Problem:
 
         def logarithms(steps: Floats) -> Floats:
             found = probe.quantities(
-                self.case, self.free, np.exp(x + steps), list(names), middle=np.exp(x)
+                self.quick, self.free, np.exp(x + steps), list(names), middle=np.exp(x)
             )
             return np.log(np.abs(found.reshape(len(steps), -1)))
 
@@ -188,7 +227,7 @@ class Problem:
         for impacts in self.impacts:
             good = []
             for part in np.array_split(spread, PARTS):
-                good.append(impacts.possible(self.case, self.free, np.exp(x + part)))
+                good.append(impacts.possible(self.quick, self.free, np.exp(x + part)))
                 self.bar.update(len(part))
             spread = spread[np.concatenate(good)]
         starts = np.vstack([x, x + spread])
