@@ -251,7 +251,7 @@ contains
          + sum(self%amplitude(self%modes + 1:))
    end function deflection
 
-   !> Add to the errors of a trajectory what no finer solution takes away, by velocity and deflection
+   !> Add to the errors of a trajectory what no finer solution takes away
    pure subroutine add_errors(self, impact, trajectory, velocity, contacts)
       class(ringing_t), intent(in) :: self
       type(impact_t), intent(in) :: impact

@@ -204,7 +204,7 @@ contains
          exact = .not. max(terms%error, vibration%error) > 0.0_wp
       end subroutine find_sums
 
-      !> Errors of the results from the last three runs, with those of the sums, and whether the steps
+      !> Errors of the results from the last three runs, with those of the sums, and whether steps
       !> are short enough
       subroutine set_errors()
 
