@@ -142,6 +142,7 @@ SETTINGS = {
     "solver.continue_after_separation=.true.": "continuing has no meaning",
     "impact.gravity=9.81": "falls with the sphere",
     "target.length=0.1": "does not belong to body 'block'",
+    "plate.thickness=0.003": "has no thickness of its own",
 }
 
 
@@ -193,6 +194,13 @@ def test_shapes_are_masses(vcor):
     assert "highest_mode" in done.err
     [with_rest] = numbers(vcor, case(LIST + ", residual_compliance = 1e-9"), ["highest_mode"])
     assert with_rest != with_rest
+
+
+def test_a_block_is_no_thin_plate(vcor):
+    """The surface of a block, a rod or a list of modes is that of the body, whatever thickness &plate has: it is judged as that of a half space."""
+    names = ["cor_sphere", "cor_deviation", "wave_loss"]
+    for body in (BLOCK, BAR):
+        assert numbers(vcor, case(body, ", thickness = 0.003"), names) == numbers(vcor, case(body), names)
 
 
 def test_no_file(vcor):

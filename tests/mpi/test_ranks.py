@@ -89,7 +89,7 @@ def test_same_bits(solved, ranks, threads):
 
 def test_structures(vcor):
     """Impacts with several contacts, on any number of ranks."""
-    (vcor.folder / "modes.csv").write_text("frequency [Hz],damping_ratio,modal_mass [kg]\n900.0,0.01,0.02\n")
+    (vcor.folder / "modes.csv").write_text("frequency [Hz],damping_ratio,modal_mass [kg]\n150.0,0.02,0.003\n900.0,0.02,0.003\n")
     vcor.write(
         "&impact velocity = 1.0 /\n&sphere radius = 0.005, material = 'steel' /\n"
         "&plate material = 'steel' /\n&target body = 'modes', file = 'modes.csv' /\n"

@@ -207,7 +207,8 @@ contains
    !> Structures of every kind are struck
    subroutine test_structures()
 
-      real(wp), parameter :: mass = 4.1e-3_wp, length = 0.1_wp, highest = 1.0e7_wp, spring = 1.0e8_wp
+      real(wp), parameter :: mass = 4.1e-3_wp, length = 0.1_wp, highest = 1.0e7_wp, &
+         spring = 1.0e8_wp
       type(prony_t) :: steel, rigid
       type(contact_modulus_t) :: modulus
       type(structure_t) :: structure

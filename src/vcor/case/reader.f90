@@ -132,6 +132,8 @@ contains
       character(len=*), parameter :: thicknesses(*) = [character(len=14) :: 'half_thickness', &
          'thickness']
       character(len=*), parameter :: at_rest = 'the plate is rigid and does not move'
+      character(len=*), parameter :: bodies_without(*) = [character(len=5) :: 'block', 'rod', &
+         'modes']
       character(len=:), allocatable :: mechanics, text
       integer :: i
 
@@ -148,7 +150,14 @@ contains
       call reading%mark(case%address('material', 'density', inputs%item(of_plate)))
       call reading%get(case, 'plate', 'base', text)
       inputs%base = bases(findloc(base_names == text, .true., dim=1))
-      if (inputs%base == base_free .and. case%given('target', 'thickness')) then
+      text = ''
+      if (case%count('target') > 0) call case%get('target', 'body', text)
+      if (inputs%base == base_free .and. any(bodies_without == text)) then
+         do i = 1, size(thicknesses)
+            call reading%leave(case%address('plate', trim(thicknesses(i))), &
+               "the surface of this body has no thickness of its own; that of a layer needs base")
+         end do
+      else if (inputs%base == base_free .and. case%given('target', 'thickness')) then
          do i = 1, size(thicknesses)
             call reading%leave(case%address('plate', trim(thicknesses(i))), &
                'target.thickness is that of the plate or beam')

@@ -70,7 +70,7 @@ contains
       else if (material%rigid .or. .not. material%density() > 0.0_wp) then
          call raise(error, error_input, 'a structure needs a material that deforms, and its ' &
             //'density', about='density')
-      else if (.not. (all(sizes > 0.0_wp) .and. damping_ratio >= 0.0_wp .and. highest > 0.0_wp)) then
+      else if (.not. (all([sizes, highest] > 0.0_wp) .and. damping_ratio >= 0.0_wp)) then
          call raise(error, error_input, 'expected sizes and a highest frequency > 0 of a ' &
             //'structure, and a damping ratio >= 0')
       end if

@@ -30,8 +30,10 @@ module vcor_solver_ringing
       !> Amplitudes [m], and velocities that the sphere misses by the impulse at first touch [m/s],
       !> same shape
       real(wp), allocatable :: amplitude(:), velocity(:)
-      !> Parts of the amplitudes that the panels have missed, same shape
+      !> Parts of the amplitudes that the panels have missed, of modes that can be resolved, and
+      !> whether these are followed: the others count as missed, shape (modes resolved)
       real(wp), allocatable :: missed(:)
+      logical, allocatable :: followed(:)
       !> Number of modes that can be resolved: each of the others stands for many
       integer :: modes = 0
       !> Flexibility over the square of the frequency of those that stand for many [m s2/N]
@@ -54,12 +56,14 @@ module vcor_solver_ringing
 contains
 
    !> Set up the modes at first touch
-   subroutine begin(self, impact, vibration, time_scale)
+   subroutine begin(self, impact, vibration, time_scale, least)
       class(ringing_t), intent(out) :: self
       type(impact_t), intent(in) :: impact
       type(vibration_t), intent(in) :: vibration
       !> Time scale of the contact [s]
       real(wp), intent(in) :: time_scale
+      !> Velocity below which the ringing need not be known [m/s]
+      real(wp), intent(in) :: least
 
       integer :: n, total
 
@@ -76,6 +80,9 @@ contains
          self%amplitude(n) = impact%ringing(self%frequency(n), vibration%yield(n), time_scale)
          self%velocity(n) = self%amplitude(n)*push(self, n, impact, impact%velocity, 0.0_wp)
       end do
+      ! all that are not followed add a hundredth of the least velocity
+      self%followed = 2.0_wp*real(self%modes, wp)*self%velocity(:self%modes) >= 0.01_wp*least
+      where (.not. self%followed) self%missed = 1.0_wp
    end subroutine begin
 
    !> Velocity of the sphere by a ringing surface, over the amplitude
@@ -116,31 +123,26 @@ contains
       if (phase > 100.0_wp) return
       inverse = map%last*map%left_one/(1.0_wp + (phase*map%eigenvalue)**2)
       left = 1.0_wp - sum(real(map%last*map%left_one, wp))
-      missed = hypot(cos(phase) - left - sum(real(inverse, wp)), &
-         sin(phase) - phase*sum(real(inverse*map%eigenvalue, wp)))
+      missed = sqrt((cos(phase) - left - sum(real(inverse, wp)))**2 &
+         + (sin(phase) - phase*sum(real(inverse*map%eigenvalue, wp)))**2)
    end function part
 
    !> Velocity that a panel misses, if the sphere leaves as fast as it came
-   pure function added(self, map, start, duration, least) result(velocity)
+   pure function added(self, map, start, duration) result(velocity)
       class(ringing_t), intent(in) :: self
       type(map_t), intent(in) :: map
       !> Start and duration of the panel [s]
       real(wp), intent(in) :: start, duration
-      !> Velocity below which it need not be known [m/s]
-      real(wp), intent(in) :: least
       !> Velocity [m/s]
       real(wp) :: velocity
 
-      real(wp) :: most
       integer :: n
 
       velocity = 0.0_wp
       if (.not. allocated(self%velocity)) return
       do n = 1, self%modes
-         most = 2.0_wp*self%velocity(n)*exp(-self%decay(n)*start)
-         ! all of these together add less than a hundredth of it
-         if (most*real(self%modes, wp) < 0.01_wp*least) cycle
-         velocity = velocity + most*part(map, self%frequency(n)*duration)
+         if (self%followed(n)) velocity = velocity + 2.0_wp*self%velocity(n) &
+            *exp(-self%decay(n)*start)*part(map, self%frequency(n)*duration)
       end do
    end function added
 
@@ -156,7 +158,7 @@ contains
       real(wp), intent(out) :: duration
 
       ! ratio of the bounds between which it lies
-      real(wp), parameter :: ratio = 1.05_wp
+      real(wp), parameter :: ratio = 1.1_wp
       real(wp) :: shorter, longer
 
       duration = huge(1.0_wp)
@@ -164,17 +166,17 @@ contains
       duration = self%longest(kind)
       if (duration > 0.0_wp) return
       duration = huge(1.0_wp)
-      if (2.0_wp*sum(self%velocity(:self%modes)) > least) then
+      if (2.0_wp*sum(self%velocity(:self%modes), self%followed) > least) then
          shorter = 1.0_wp/maxval(self%frequency(:self%modes))
          duration = shorter
          do
             longer = 2.0_wp*shorter
-            if (self%added(rule%map(kind), 0.0_wp, longer, least) > least) exit
+            if (self%added(rule%map(kind), 0.0_wp, longer) > least) exit
             shorter = longer
          end do
          do while (longer > ratio*shorter)
             duration = sqrt(longer*shorter)
-            if (self%added(rule%map(kind), 0.0_wp, duration, least) > least) then
+            if (self%added(rule%map(kind), 0.0_wp, duration) > least) then
                longer = duration
             else
                shorter = duration
@@ -197,7 +199,7 @@ contains
       if (.not. allocated(self%velocity)) return
       do n = 1, self%modes
          ! never more than another ringing of the same amplitude
-         if (self%missed(n) < 2.0_wp) self%missed(n) = min(2.0_wp, self%missed(n) &
+         if (self%followed(n) .and. self%missed(n) < 2.0_wp) self%missed(n) = min(2.0_wp, self%missed(n) &
             + exp(-self%decay(n)*start)*part(map, self%frequency(n)*duration))
       end do
    end subroutine accept
@@ -251,7 +253,7 @@ contains
          + sum(self%amplitude(self%modes + 1:))
    end function deflection
 
-   !> Add to the errors of a trajectory what no finer solution takes away, by velocity and deflection
+   !> Add to the errors of a trajectory what no finer solution takes away
    pure subroutine add_errors(self, impact, trajectory, velocity, contacts)
       class(ringing_t), intent(in) :: self
       type(impact_t), intent(in) :: impact

@@ -513,6 +513,8 @@ contains
       integer :: i
 
       best = error_of_best(self)
+      ! with what no step makes smaller of a structure
+      if (self%first_contact) best = best + self%attempts(attempt_halved(3))%stated()
       do i = 1, size(self%compared)
          associate (this => self%compared(i))
             allowed = honest_factor*this%direct%error + rounding*this%scale &

@@ -204,7 +204,7 @@ contains
          exact = .not. max(terms%error, vibration%error) > 0.0_wp
       end subroutine find_sums
 
-      !> Errors of the results from the last three runs, with those of the sums, and whether the steps
+      !> Errors of the results from the last three runs, with those of the sums, and whether steps
       !> are short enough
       subroutine set_errors()
 
@@ -228,7 +228,7 @@ contains
             <= share*settings%accuracy &
             .and. trajectory%max_force_error <= settings%accuracy*trajectory%max_force &
             .and. trajectory%contact_time_error <= settings%accuracy*trajectory%first_end
-         call ringing%begin(impact, vibration, impact%time_scale())
+         call ringing%begin(impact, vibration, impact%time_scale(), 0.0_wp)
          of_modes = ringing%velocity_errors(impact, abs(last(trajectory, col_velocity)), &
             last(trajectory, col_indentation))
          call ringing%add_errors(impact, trajectory, of_modes(2) &

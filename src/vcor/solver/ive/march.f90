@@ -210,7 +210,8 @@ contains
       call start_motion(self%coarse, rules(2))
       self%control%length = first_length(self, impact%law%contact_time*time_scale)
       call resolve_modes()
-      if (allocated(sums%vibration)) call self%ringing%begin(impact, sums%vibration, time_scale)
+      if (allocated(sums%vibration)) call self%ringing%begin(impact, sums%vibration, &
+         time_scale, self%control%tolerance*self%speed)
 
    contains
 
@@ -488,8 +489,8 @@ contains
             self%control%excess = max(self%control%excess, self%kick/self%control%tolerance)
          end if
          self%control%excess = max(self%control%excess, self%ringing%added( &
-            fine%rule%map(self%step%kind), fine%start%time, self%step%duration, &
-            self%control%tolerance*self%speed)/(self%control%tolerance*self%speed))
+            fine%rule%map(self%step%kind), fine%start%time, self%step%duration) &
+            /(self%control%tolerance*self%speed))
          if (hides_an_end(self, trajectory%max_force)) self%control%excess = huge(1.0_wp)
          if (.not. self%control%excess >= 0.0_wp) self%control%excess = huge(1.0_wp)
          if (fine%recedes .or. is_refused(self)) return
