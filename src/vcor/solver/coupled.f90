@@ -19,6 +19,7 @@ module vcor_solver_coupled
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
    use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
       march
+   use vcor_solver_coupled_structure, only : leave_structure
    use vcor_solver_type, only : as_text, default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -252,6 +253,9 @@ contains
          window_ratio, search%scale%time)
       if (peak_window > 0.0_wp) call resolve_peak(self, impact, search%radius, peak_window, &
          trajectory, error)
+      if (allocated(error)) return
+      if (impact%target%structure%exists()) &
+         call leave_structure(impact, self%settings%accuracy, trajectory, error)
       if (allocated(error)) return
       self%found = plan_t(level, search%window, search%radius, peak_window)
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting

@@ -58,11 +58,12 @@ module vcor_solver_coupled_kernel
       !> Later weights of the hats [m/N], that of lag n from hat j to hat i at
       !> (j + hats (steps - 1 - n), i), shape (hats (steps - 1), hats)
       real(wp), allocatable :: later(:, :)
-      !> What the face is: its base, Poisson's ratio, thickness and moduli at all frequencies
+      !> What the face is: its base, Poisson's ratio, thickness, moduli at all frequencies and what
+      !> moves as a whole
       integer, private :: base = -1
       logical, private :: has_waves = .false.
       real(wp), private :: thickness = 0.0_wp
-      complex(wp), allocatable, private :: modulus(:), compliance(:), p(:)
+      complex(wp), allocatable, private :: modulus(:), compliance(:), p(:), drift(:)
    contains
       procedure :: is_for
       procedure :: numbers
@@ -106,6 +107,7 @@ contains
       yes = all(abs(self%modulus - face%plate_modulus(s)) <= 0.0_wp) &
          .and. all(abs(self%compliance - face%local_compliance(s)) <= 0.0_wp) &
          .and. all(abs(self%p - face%per_shear_speed(s)) <= 0.0_wp)
+      if (yes) yes = all(abs(self%drift - face%drift(s)) <= 0.0_wp)
    end function is_for
 
    !> Laplace variable of a step, 1/dt
@@ -147,6 +149,7 @@ contains
       self%modulus = face%plate_modulus(s)
       self%compliance = face%local_compliance(s)
       self%p = face%per_shear_speed(s)
+      self%drift = face%drift(s)
       call new_row(self%row, mesh%radius, mesh%hats, mesh%springs)
       found = weights(reshape(self%compliance, [1, size(s)]))
       allocate (self%local(0:mesh%steps - 1), source=found(1, :))

@@ -161,16 +161,20 @@ contains
       !> Expand contact and structure in sums of exponentials
       subroutine find_sums()
 
-         real(wp) :: accuracy
+         ! accuracy of the numerical inversion of a pair
+         real(wp), parameter :: rounding = 3.0e-12_wp
+         real(wp) :: accuracy, brief
 
          accuracy = sum_share*max(settings%accuracy, epsilon(1.0_wp))
-         call impact%kernel_exponentials(window, accuracy, terms)
+         brief = impact%law%contact_time*impact%time_scale()
+         ! as in `expand` of a structure
+         call impact%kernel_exponentials(window, max(accuracy*(brief/window)**3, rounding), terms)
          if (.not. terms%error < 1.0_wp) then
             call raise(error, error_numerical, 'no sum of exponentials represents the kernel ' &
                //'of this contact')
             return
          end if
-         call impact%target%structure%expand(window, accuracy, vibration, error)
+         call impact%target%structure%expand(window, brief, accuracy, vibration, error)
          exact = .not. max(terms%error, vibration%error) > 0.0_wp
       end subroutine find_sums
 
@@ -435,7 +439,7 @@ contains
       modes = run%modes%state()
       trajectory%rigid_velocity = vibration%rigid_velocity(modes)
       trajectory%structure_energy = unset
-      if (size(vibration%rate) == 0) trajectory%structure_energy = sum(vibration%energy(modes)) &
+      if (size(vibration%rate) == 0) trajectory%structure_energy = vibration%energy(modes) &
          + back*vibration%power_lost(modes)
       trajectory%work = run%work
       state = run%node(impact)
