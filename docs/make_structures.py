@@ -184,7 +184,7 @@ def main(folder):
     """Write the page to a folder."""
     text = (ROOT / "docs" / "structures.md").read_text("utf-8")
     for make in (plates, relaxing, anvils, pendulum, waves):
-        pattern = rf"(<!-- {make.__name__} -->\n).*?(\n?<!-- end -->)"
+        pattern = rf"(<!-- {make.__name__} -->\n).*?(\n<!-- end -->)"
         text = re.sub(pattern, rf"\g<1>{make()}\g<2>", text, flags=re.DOTALL)
     (folder / "structures.md").write_text(text, "utf-8")
 

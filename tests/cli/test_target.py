@@ -469,7 +469,7 @@ def test_struck_again_behind_waves(vcor):
     assert found[0] == pytest.approx(expected[0], abs=1e-5)
     assert found[1] == expected[1] == 2
     assert found[2:] == pytest.approx(expected[2:], rel=0.02)
-    text = DROP.format(plate=", waves = 'body'", target="body = 'block', mass = 0.03, stiffness = 2e3")
+    text = DROP.format(plate=", waves = 'body'", target="body = 'block', mass = 0.02, stiffness = 300.0")
     assert numbers(vcor, text.replace("waves = 'body'", "waves = 'none'"), ["contacts"])[0] > 1
     vcor.write(text)
     done = vcor("run", "case.nml")

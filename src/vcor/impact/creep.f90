@@ -53,7 +53,7 @@ contains
       spectrum = in_order(terms)
       n = ubound(spectrum%rate, 1)
       a = damping
-      b = square
+      b = square*terms%equilibrium
       push = yield
       kick = 0.0_wp
       ! those of rigid motion have no stiffness that relaxes
