@@ -40,6 +40,8 @@ module vcor_impact_structure
       real(wp), allocatable :: square(:), damping(:), yield(:)
       !> Flexibility C_r of the modes left out [m/N], >= 0
       real(wp) :: residual = 0.0_wp
+      !> Number of modes, the last ones, each of which stands for many
+      integer :: lumped = 0
       !> Material of a viscoelastic structure, otherwise unallocated, and its modulus E_ref that w
       !> is for [Pa]
       class(material_t), allocatable, private :: material
@@ -63,6 +65,8 @@ module vcor_impact_structure
       real(wp), allocatable :: rate(:), weight(:)
       !> Flexibility of the modes left out [m/N]
       real(wp) :: residual = 0.0_wp
+      !> Number of oscillators, the last ones, each of which stands for many
+      integer :: lumped = 0
       !> Error of the sum [-]
       real(wp) :: error = 0.0_wp
    contains
@@ -211,6 +215,7 @@ contains
       type(exponential_sum_t) :: terms
 
       vibration%residual = self%residual
+      vibration%lumped = self%lumped
       if (.not. allocated(self%material)) then
          vibration%square = self%square
          vibration%damping = self%damping
