@@ -60,8 +60,8 @@ module vcor_impact_structure
       !> Squares b of the frequencies [1/s2], dampings a [1/s], yields q [1/kg] and kicks of the
       !> oscillators [s/kg], shape (modes)
       real(wp), allocatable :: square(:), damping(:), yield(:), kick(:)
-      !> Rates x [1/s] and weights r [s/kg] of the exponentials, shape (n); none if the material does
-      !> not relax
+      !> Rates x [1/s] and weights r [s/kg] of the exponentials, shape (n); none if the material
+      !> does not relax
       real(wp), allocatable :: rate(:), weight(:)
       !> Flexibility of the modes left out [m/N]
       real(wp) :: residual = 0.0_wp

@@ -56,7 +56,8 @@ module vcor_solver_coupled_kernel
       !> Later weights of the hats [m/N], that of lag n from hat j to hat i at
       !> (i, j + hats (steps - 1 - n)), shape (hats, hats (steps - 1))
       real(wp), allocatable :: later(:, :)
-      !> What the face is at the frequencies of the mesh, and the compliance of what moves as a whole
+      !> What the face is at the frequencies of the mesh, and the compliance of what moves as a
+      !> whole
       type(moduli_t) :: moduli
       complex(wp), allocatable, private :: drift(:)
    contains

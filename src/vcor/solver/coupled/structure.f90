@@ -3,9 +3,9 @@
 !>
 !> In the contact the structure is a part of the response that moves as a whole (`drift` of
 !> `vcor_impact_face`). The march goes on while the sphere still moves towards it, through further
-!> contacts. Its state where the sphere leaves follows from the course of the force. From then on it
-!> is followed without the waves in the face, which have left the place, with the dent as the springs
-!> of a contact without waves keep it (`vcor_solver_direct_contacts`).
+!> contacts. Its state where the sphere leaves follows from the course of the force. From then on
+!> it is followed without the waves in the face, which have left the place, with the dent as the
+!> springs of a contact without waves keep it (`vcor_solver_direct_contacts`).
 module vcor_solver_coupled_structure
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
