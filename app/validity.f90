@@ -33,7 +33,7 @@ module vcor_app_validity
       'cor', 'cor_sphere', 'cor_error', 'cor_sphere_error', 'initial_energy', 'wave_energy', &
       'energy_loss', 'energy_imbalance', 'contact_ratio', 'needed_extent', &
       'deflection_ratio', 'weight_ratio', 'mean_pressure', 'cor_deviation', 'layer_strain', &
-      'mass_ratio', 'axis_tension', 'highest_mode', 'contacts']
+      'mass_ratio', 'axis_tension', 'highest_mode', 'contacts', 'block_reach']
 
 contains
 
@@ -105,7 +105,7 @@ contains
          ! the surface moves with the structure
          if (keys(i) == 'waves' .and. case%count('target') > 0) then
             text = text//', '//structure_text(case)
-            cycle
+            if (word == 'none') cycle
          end if
          if (present(exact) .and. keys(i) /= 'base') then
             word = trim(exact%law)
@@ -218,6 +218,10 @@ contains
                words = 'the modes end '//trim(merge('below     ', 'just above', &
                   outcome%highest_mode < 1.0_wp))//' the frequency of the contact, pi/t0: give ' &
                   //'more of them, or target.residual_compliance'
+            case ('block_reach')
+               words = 'the block is lighter than the half space that its waves fill, ' &
+                  //percent(value)//" of its size: compare waves = 'none', or give the modes of " &
+                  //'the body'
             case ('contacts')
                words = 'the structure strikes the sphere again: damping and phase decide; a ' &
                   //'velocity that differs by a per cent may give another number'
@@ -379,6 +383,7 @@ contains
       outcome%axis_tension = summary%values(places(17))%reals(point)
       outcome%highest_mode = summary%values(places(18))%reals(point)
       outcome%contacts = summary%values(places(19))%integers(point)
+      outcome%block_reach = summary%values(places(20))%reals(point)
    end function outcome_at
 
    !> Restitution of the sphere with exact mechanics at the first and the last point with a result,

@@ -3,10 +3,14 @@
     python docs/make_structures.py [FOLDER]
 """
 
+import math
 import re
 import sys
+import tempfile
 import warnings
 from pathlib import Path
+
+import numpy as np
 
 import vcor
 
@@ -24,6 +28,15 @@ PLATES = [
 ]
 # mass [kg] and stiffness [N/m] of an anvil of steel
 ANVILS = [(0.05, 1e9), (0.2, 1e8), (1.0, 1e7)]
+# A plastic sheet of 2 mm under a rigid ball, and half of its sides [m]
+SHEET = {"name": "sheet", "model": "prony", "density": 1200.0, "poisson_ratio": 0.3,
+         "equilibrium_modulus": 2.5e9, "moduli": [2.5e9], "times": [1e-5]}  # fmt: skip
+SIDE, THICKNESS = 0.12, 0.002
+# Natural rubber, and the masses of the block of it [kg]
+RUBBER = {"name": "rubber", "model": "prony", "density": 1100.0, "poisson_ratio": 0.5,
+          "equilibrium_modulus": 2e6, "moduli": [3e5, 3e5, 4e5, 6e5],
+          "rates": [30.0, 300.0, 3e3, 3e4]}  # fmt: skip
+BLOCKS = [10.0, 1.0, 0.2]
 # mass of the anvil of a rebound test [kg]
 MASSES = [70.0, 35.0, 10.0]
 
@@ -70,19 +83,107 @@ def anvils():
 
 def pendulum():
     """The rebound test of the example on a free anvil."""
-    one = vcor.read(ROOT / "examples" / "rubber_pad_on_steel.nml")
-    lines = ["| anvil | resilience |", "|---|---|", f"| fixed | {100 * float(one.run().resilience):.1f} % |"]
-    one["target.body"] = "block"
-    for mass in MASSES:
-        one["target.mass"] = mass
-        lines.append(f"| {mass:g} kg | {100 * float(one.run().resilience):.1f} % |")
+    pad = vcor.read(ROOT / "examples" / "rubber_pad_on_steel.nml")
+    half_space = vcor.Case(re.sub(r"\n *(thickness|base) *=[^\n]*", "", str(pad)))
+    half_space["plate.waves"] = "none"
+    lines = ["| anvil | pad | half space |", "|---|---|---|"]
+    for mass in [None, *MASSES]:
+        if mass:
+            for one in (pad, half_space):
+                one["target.body"] = "block"
+                one["target.mass"] = mass
+        row = [f"{100 * float(one.run().resilience):.1f} %" for one in (pad, half_space)]
+        lines.append(f"| {f'{mass:g} kg' if mass else 'fixed'} | {row[0]} | {row[1]} |")
+    return "\n".join(lines)
+
+
+def on_sheet(target=None, **plate):
+    """A rigid ball on the sheet."""
+    groups = {
+        "impact": {"velocity": 2.0},
+        "sphere": {"radius": 0.002, "material": "ball"},
+        "plate": {"material": "sheet", **plate},
+        "contact": {"law": "boltzmann"},
+        "material": [{"name": "ball", "model": "rigid", "density": 2500.0}, SHEET],
+    }
+    if target:
+        groups["target"] = target
+    return float(vcor.Case(groups).run().cor_sphere)
+
+
+def modes_of_sheet(moduli):
+    """Modes of the sheet with the modulus that a function gives for the glassy frequency [rad/s]."""
+    glassy = SHEET["equilibrium_modulus"] + SHEET["moduli"][0]
+    order = np.arange(1, 121, 2) * math.pi / SIDE
+    wave = (order[:, None] ** 2 + order**2).ravel()
+    bending = THICKNESS**2 / (12 * (1 - SHEET["poisson_ratio"] ** 2) * SHEET["density"])
+    w = np.sort(wave) * math.sqrt(glassy * bending)
+    w = w[w < 8e6]
+    ratio = np.zeros_like(w)
+    for n, one in enumerate(w):
+        w[n], ratio[n] = moduli(one, glassy)
+    mass = SHEET["density"] * THICKNESS * SIDE**2 / 4
+    return "frequency [Hz],damping_ratio,modal_mass [kg]\n" + "".join(
+        f"{f / (2 * math.pi)!r},{zeta!r},{mass!r}\n" for f, zeta in zip(w.tolist(), ratio.tolist(), strict=True)
+    )
+
+
+def with_loss(w, glassy):
+    """Frequency with the storage modulus there, and half of the loss tangent there."""
+    modulus, first = glassy, w
+    for _ in range(60):
+        p = 1j * w * SHEET["times"][0]
+        modulus = SHEET["equilibrium_modulus"] + SHEET["moduli"][0] * p / (1 + p)
+        w = first * math.sqrt(modulus.real / glassy)
+    return w, 0.5 * modulus.imag / modulus.real
+
+
+def relaxing():
+    """A sheet of a material that relaxes, and what modes with damping ratios make of it."""
+    body = {"body": "plate", "support": "supported", "length": SIDE, "width": SIDE}
+    lines = ["| the sheet | e |", "|---|---|"]
+    e = on_sheet(thickness=THICKNESS, waves="hereditary")
+    lines.append(f"| infinite, `waves = 'hereditary'` | {e:.6f} |")
+    lines.append(f"| {1e3 * SIDE:g} x {1e3 * SIDE:g} mm, its material in every mode | {on_sheet(body, thickness=THICKNESS):.6f} |")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "modes.csv"
+        for name, law in (("a damping ratio for each mode", with_loss), ("modes without loss", lambda w, _: (w, 0.0))):
+            path.write_text(modes_of_sheet(law), encoding="utf-8")
+            lines.append(f"| {name} | {on_sheet({'body': 'modes', 'file': str(path)}):.3f} |")
+    return "\n".join(lines)
+
+
+def waves():
+    """A steel ball on a block of rubber, with and without waves in it."""
+    groups = {
+        "impact": {"drop_height": 0.25},
+        "sphere": {"radius": 0.0075, "material": "steel"},
+        "plate": {"material": "rubber", "waves": "none"},
+        "contact": {"law": "receding", "pair": "series"},
+        "material": [{"name": "steel", "model": "rigid", "density": 7850.0}, RUBBER],
+    }
+    one = vcor.Case(groups)
+    lines = ["| block | without waves | with waves | `block_reach` |", "|---|---|---|---|"]
+    for mass in [None, *BLOCKS]:
+        if mass:
+            one["target.body"] = "block"
+            one["target.mass"] = mass
+        found = []
+        for kind in ("none", "body"):
+            one["plate.waves"] = kind
+            found.append(one.run())
+        reach = f"{float(found[1].block_reach):.2f}" if mass else ""
+        lines.append(
+            f"| {f'{mass:g} kg' if mass else 'floor'} | {float(found[0].cor_sphere):.3f} | "
+            f"{float(found[1].cor_sphere):.3f} | {reach} |"
+        )
     return "\n".join(lines)
 
 
 def main(folder):
     """Write the page to a folder."""
     text = (ROOT / "docs" / "structures.md").read_text("utf-8")
-    for make in (plates, anvils, pendulum):
+    for make in (plates, relaxing, anvils, pendulum, waves):
         pattern = rf"(<!-- {make.__name__} -->\n).*?(\n<!-- end -->)"
         text = re.sub(pattern, rf"\g<1>{make()}\g<2>", text, flags=re.DOTALL)
     (folder / "structures.md").write_text(text, "utf-8")

@@ -122,6 +122,25 @@ def test_a_coupled_contact(results, tmp_path):
     assert texts(made) == [f"energy loss {lost:.4g} J"]
 
 
+def test_a_history_through_several_contacts(tmp_path):
+    """It goes on to the last separation, with the energy in the structure."""
+    case = ROOT / "examples" / "ball_on_cantilever.nml"
+    subprocess.run(
+        [os.environ["VCOR"], "run", case, "--quiet"], cwd=tmp_path, check=True, timeout=None
+    )
+    path = tmp_path / "ball_on_cantilever.h5"
+    result = vcor.open(path)
+    (axis,) = figure([path]).axes
+    _, velocity, force, given, _ = curves(axis)
+    end = 1e3 * float(result.last_separation)
+    assert end > 1.5e3 * float(result.contact_time)
+    assert force.get_xdata()[-1] == pytest.approx(end)
+    assert velocity.get_ydata()[-1] == pytest.approx(float(result.cor_sphere), abs=1e-3)
+    share = float(result.wave_energy / result.initial_energy)
+    assert given.get_ydata()[-1] == pytest.approx(share, rel=1e-2)
+    assert not any(len(line.get_xdata()) for line in axis.lines if line.get_linestyle() == "--")
+
+
 def test_moduli(results):
     made = figure([results / "sls_material.h5"])
     relaxation, moduli, tangent = made.axes

@@ -53,6 +53,7 @@ NAMES = [
     "needed_extent",
     "deflection_ratio",
     "highest_mode",
+    "block_reach",
     "weight_ratio",
     "mass_ratio",
     "mean_pressure",

@@ -5,8 +5,11 @@ import json
 
 import h5py
 import pytest
-from program import INPUT, NUMERICAL, SUCCESS
+from program import INPUT, NUMERICAL, ROOT, SUCCESS
 
+RELAXING = json.loads(
+    (ROOT / "tests" / "reference" / "structures.json").read_text(encoding="utf-8")
+)
 STEEL = "name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3, density = 7850"
 GLASS = "name = 'glass', model = 'elastic', modulus = 70e9, poisson_ratio = 0.22, density = 2500"
 RUBBER = "name = 'rubber', model = 'sls', glassy_modulus = 15e6, alpha = 300, beta = 1200, poisson_ratio = 0.5, density = 1100"
@@ -125,7 +128,9 @@ REFUSED = {
     "no such material": (PANEL + ", material = 'brass'", ", thickness = 0.003", "there is no material 'brass' for &target"),
     "an extent": (BLOCK, ", extent = 0.1", "found extent with &target"),
     "waves of a thin plate": (BLOCK, ", thickness = 0.003, waves = 'hereditary'", "expected waves = 'none'"),
-    "waves in a body": (BLOCK, ", waves = 'body'", "expected waves = 'none'"),
+    "waves in a plate": (PANEL, ", thickness = 0.003, waves = 'body'", "the modes of this body hold the bending"),
+    "waves in a beam": (CANTILEVER, ", thickness = 0.003, waves = 'body'", "the modes of this body hold the bending"),
+    "waves in a free plate": (BLOCK, ", thickness = 0.003, waves = 'body'", "moves beside the structure"),
 }
 
 
@@ -136,7 +141,6 @@ def test_refused(vcor, name):
 
 
 SETTINGS = {
-    "solver.method=coupled": "by method = 'ive' or 'direct'",
     "solver.scheme=adams_bashforth": "'direct' with scheme = 'product'",
     "solver.volterra_order=2": "expected volterra_order = 1",
     "solver.continue_after_separation=.true.": "continuing has no meaning",
@@ -325,6 +329,172 @@ def test_moves_for_ever(vcor, mass, stiffness):
     assert done.code == NUMERICAL
     assert done.err.count("\n") == 1
     assert "the bodies do not separate within" in done.err
+
+
+@pytest.mark.parametrize("impact", RELAXING, ids=lambda one: one["name"])
+def test_relaxing_structure(vcor, impact):
+    """Every body of every material through one or several contacts, as tests/reference/make_structures.py has it."""
+    names = ["cor_sphere", "contacts", "last_separation", "max_force", "cor_sphere_error"]
+    e, contacts, last, force, error = numbers(vcor, impact["case"], names)
+    # the accuracy that is asked for, with the digits of the reference
+    assert e == pytest.approx(impact["cor_sphere"], abs=1e-6 + impact["difference"])
+    assert contacts == impact["contacts"]
+    # ends and largest forces of the reference are those of a node of its steps
+    assert last == pytest.approx(impact["last_separation"], rel=1e-3)
+    assert force == pytest.approx(impact["max_force"], rel=1e-3)
+    assert error <= 1e-6
+
+
+RELAXES = {
+    "sls": "model = 'sls', glassy_modulus = 5e9, alpha = 5e4, beta = 1e5",
+    "a dashpot beside a spring": "model = 'prony', equilibrium_modulus = 4e9, viscosity = 2e3",
+    "a fluid": "model = 'prony', moduli = 4e9, times = 1e-4",
+    "a power law": "model = 'power_law', equilibrium_modulus = 1e9, coefficient = 6e7, exponent = 0.3",
+    "cerf": "model = 'cerf', equilibrium_modulus = 1e9, relaxing_modulus = 4e9, beta = 300.0",
+    "a table": "model = 'table', file = 'sheet.csv'",
+}
+
+
+@pytest.mark.parametrize("law", ["boltzmann", "receding"])
+@pytest.mark.parametrize("name", RELAXES)
+def test_relaxing_plate_without_edges(vcor, name, law):
+    """A wide plate of a material that relaxes is the thin plate that remembers."""
+    rows = "".join(f"{10 ** (i / 4 - 9)!r},{1e9 + 4e9 / (1 + (10 ** (i / 4 - 9) / 1e-5) ** 0.3)!r}\n" for i in range(29))
+    (vcor.folder / "sheet.csv").write_text("time [s],modulus [Pa]\n" + rows, encoding="utf-8")
+    text = f"""&impact velocity = 2.0 /
+&sphere radius = 0.002, material = 'ball' /
+&plate thickness = 0.002, material = 'sheet', waves = 'hereditary' /
+&contact law = '{law}' /
+&material name = 'ball', model = 'rigid', density = 2500 /
+&material name = 'sheet', {RELAXES[name]}, density = 1200, poisson_ratio = 0.3 /
+"""
+    names = ["cor_sphere", "contact_time", "max_force"]
+    infinite = numbers(vcor, text, names)
+    body = "&target body = 'plate', support = 'supported', length = 0.12, width = 0.12 /\n"
+    finite = numbers(vcor, text.replace(", waves = 'hereditary'", "") + body, [*names, "contacts", "structure_energy"])
+    assert finite[0] == pytest.approx(infinite[0], abs=1e-6)
+    assert finite[1:3] == pytest.approx(infinite[1:], rel=1e-5)
+    assert finite[3] == 1
+    # what is stored in a material that relaxes is not in its modulus; of a spring and a dashpot it is
+    assert (finite[4] != finite[4]) == ("dashpot" not in name)
+
+
+def test_temperature_of_a_structure(vcor):
+    """A shift moves the times of the structure's material, whatever carries it."""
+    beam = "body = 'beam', support = 'free', length = 0.1, width = 0.02, thickness = 0.006, material = 'sheet'"
+    sheet = "name = 'sheet', model = 'sls', glassy_modulus = 5e9, poisson_ratio = 0.3, density = 1200"
+    wlf = ", shift = 'wlf', wlf_c1 = 10.0, wlf_c2 = 100.0, reference_temperature = 300.0"
+    names = ["cor_sphere", "contacts"]
+    slow = case(beam, impact="velocity = 1.0, temperature = 325.0", more=f"&material {sheet}, alpha = 1e3, beta = 2e3{wlf} /\n")
+    fast = case(beam, more=f"&material {sheet}, alpha = 1e5, beta = 2e5 /\n")
+    assert numbers(vcor, slow, names) == pytest.approx(numbers(vcor, fast, names), abs=1e-7)
+    same = slow.replace("325.0", "300.0")
+    assert numbers(vcor, same, names)[0] != pytest.approx(numbers(vcor, fast, names)[0], abs=1e-3)
+
+
+def test_structure_of_a_dashpot(vcor):
+    """Without a spring there are no modes."""
+    beam = "body = 'beam', support = 'free', length = 0.1, width = 0.02, thickness = 0.006, material = 'oil'"
+    oil = "&material name = 'oil', model = 'prony', viscosity = 1e3, poisson_ratio = 0.3, density = 1200 /\n"
+    assert "more than a dashpot" in refused(vcor, case(beam, more=oil))
+
+
+# The drop of a steel ball on natural rubber, which is a half space
+DROP = """&impact drop_height = 0.25 /
+&sphere radius = 0.0075, mass = 0.013872178, material = 'steel' /
+&plate material = 'rubber'{plate} /
+&contact law = 'receding', pair = 'series' /
+&target {target} /
+&material name = 'steel', model = 'rigid' /
+&material name = 'rubber', model = 'prony', poisson_ratio = 0.5, density = 1100, equilibrium_modulus = 2e6,
+   moduli = 3e5, 3e5, 4e5, 6e5, rates = 30, 300, 3e3, 3e4 /
+"""
+HEAVY = "body = 'block', mass = 1e9"
+
+
+@pytest.mark.parametrize("base", ["", ", thickness = 0.02, base = 'bonded'", ", thickness = 0.02, base = 'sliding'"])
+@pytest.mark.parametrize("target", ["body = 'block', mass = 1.0", "body = 'block', mass = 0.2, stiffness = 1e6, damping = 30.0"])
+def test_coupled_without_waves(vcor, base, target):
+    """A block behind the coupled contact, which knows no rule of receding contact, is that behind ive."""
+    text = DROP.format(plate=base, target=target)
+    names = ["cor_sphere", "cor", "contacts", "contact_time", "structure_energy"]
+    expected = numbers(vcor, text, names)
+    found = numbers(vcor, text, names, "--set", "solver.method=coupled")
+    assert found[:2] == pytest.approx(expected[:2], abs=1e-5)
+    assert found[2] == expected[2] == 1
+    assert found[3:] == pytest.approx(expected[3:], rel=1e-3)
+
+
+def test_rubber_block(vcor):
+    """Natural rubber on 1 kg, by three independent solutions 0.8649."""
+    text = DROP.format(plate="", target="body = 'block', mass = 1.0")
+    for method in ("ive", "direct", "coupled"):
+        assert numbers(vcor, text, ["cor_sphere"], "--set", f"solver.method={method}")[0] == pytest.approx(0.8649, abs=5e-5)
+
+
+@pytest.mark.parametrize("base", ["", ", thickness = 0.02, base = 'bonded'"])
+def test_waves_in_the_face(vcor, base):
+    """Behind waves in its face a heavy block is a floor, a mode of frequency 0 a free block, a spring a sprung one."""
+    body = base + ", waves = 'body'"
+    names = ["cor_sphere", "contact_time", "max_force"]
+    floor = numbers(vcor, DROP.format(plate=body, target="").replace("&target  /\n", ""), names)
+    assert numbers(vcor, DROP.format(plate=body, target=HEAVY), names) == pytest.approx(floor, rel=1e-5)
+    (vcor.folder / "modes.csv").write_text(HEAD + "0.0,0.0,1.0\n", encoding="utf-8")
+    names = ["cor_sphere", "cor", "structure_energy", "wave_energy", "contacts"]
+    block = numbers(vcor, DROP.format(plate=body, target="body = 'block', mass = 1.0"), names)
+    of_list = numbers(vcor, DROP.format(plate=body, target=LIST), names)
+    assert of_list[:3] == pytest.approx(block[:3], rel=1e-9)
+    assert block[3] != block[3]
+    assert block[4] == 1
+    # the momentum of ball and block
+    mass, velocity = 0.013872178, (2 * 9.80665 * 0.25) ** 0.5
+    speed = mass * velocity * (1 + block[0]) / 1.0
+    assert block[1] == pytest.approx(block[0] + speed / velocity, abs=2e-5)
+    assert block[2] == pytest.approx(0.5 * speed**2, rel=1e-4)
+    assert block[0] < floor[0]
+
+
+def test_a_block_lighter_than_its_half_space(vcor):
+    """Waves that are back from the other side of the block are said, in a sweep point by point."""
+    plate = ", waves = 'body'"
+    text = DROP.format(plate=plate, target="body = 'block', mass = 1.0").replace("drop_height = 0.25", "velocity = 0.44, gravity = 0.0")
+    reach, extent = numbers(vcor, text, ["block_reach", "needed_extent"])
+    assert reach == pytest.approx(extent / (1.0 / 1100) ** (1 / 3), rel=1e-12)
+    vcor.write(text + "&sweep parameter = 'target.mass', values = 0.1, 1.0, 100.0 /\n")
+    assert vcor("run", "case.nml").code == SUCCESS
+    rows = list(csv.DictReader(line for line in open(vcor.folder / "case_summary.csv") if line[0] != "#"))
+    for row in rows:
+        assert (float(row["block_reach"]) > 1) == (row["validity_cause"] == "block_reach")
+    assert {row["validity_cause"] == "block_reach" for row in rows} == {True, False}
+
+
+def test_struck_again_behind_waves(vcor):
+    """A light block on a spring comes back: that is solved as long as the ball has not turned back, and else refused."""
+    names = ["cor_sphere", "contacts", "contact_time", "last_separation"]
+    text = DROP.format(plate="", target="body = 'block', mass = 0.0139, stiffness = 1e3")
+    expected = numbers(vcor, text, names)
+    found = numbers(vcor, text, names, "--set", "solver.method=coupled")
+    assert found[0] == pytest.approx(expected[0], abs=1e-5)
+    assert found[1] == expected[1] == 2
+    assert found[2:] == pytest.approx(expected[2:], rel=0.02)
+    text = DROP.format(plate=", waves = 'body'", target="body = 'block', mass = 0.02, stiffness = 300.0")
+    assert numbers(vcor, text.replace("waves = 'body'", "waves = 'none'"), ["contacts"])[0] > 1
+    vcor.write(text)
+    done = vcor("run", "case.nml")
+    assert done.code == NUMERICAL
+    assert "strikes the sphere again" in done.err
+    assert done.err.count("\n") == 1
+
+
+def test_a_rod_behind_a_pad(vcor):
+    """A long rod behind a pad with waves is a dashpot."""
+    pad = ", thickness = 0.02, base = 'bonded', waves = 'body'"
+    metal = "&material name = 'metal', model = 'elastic', modulus = 70e9, poisson_ratio = 0.3, density = 2700 /\n"
+    rod = "body = 'rod', support = 'free', length = 20.0, diameter = 0.004, material = 'metal'"
+    drag = 2700 * (70e9 / 2700) ** 0.5 * 3.141592653589793 / 4 * 0.004**2
+    [e] = numbers(vcor, DROP.format(plate=pad, target=rod) + metal, ["cor_sphere"])
+    [dashpot] = numbers(vcor, DROP.format(plate=pad, target=f"body = 'block', mass = 1e-9, damping = {drag!r}"), ["cor_sphere"])
+    assert e == pytest.approx(dashpot, abs=1e-4)
 
 
 # A supported beam whose third contact ends at the velocity GRAZING

@@ -35,6 +35,7 @@ SUMMARY = {
     "needed_extent": "m",
     "deflection_ratio": "1",
     "highest_mode": "1",
+    "block_reach": "1",
     "weight_ratio": "1",
     "mass_ratio": "1",
     "mean_pressure": "Pa",

@@ -8,11 +8,13 @@ program test_target
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t, new_impact
-   use vcor_impact_structure, only : new_structure, structure_t
+   use vcor_impact_structure, only : new_structure, structure_t, vibration_t
    use vcor_impact_target, only : new_target, target_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : pi, wp
+   use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_type, only : material_t
    use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : refused, success
@@ -31,6 +33,7 @@ program test_target
    call test_frequencies()
    call test_refusals()
    call test_creep()
+   call test_splitting()
    call test_ringing()
    call test_references()
    call finish()
@@ -282,6 +285,72 @@ contains
          "modes beyond the limit as a flexibility")
    end subroutine test_creep
 
+   !> The oscillators and exponentials of modes that relax are what the correspondence principle
+   !> says: terms that are not in order, of one rate, fluids, dashpots, modes that do not swing, and
+   !> more modes than rates
+   subroutine test_splitting()
+
+      type(prony_t) :: prony
+      type(power_law_t) :: power
+      type(error_t), allocatable :: error
+
+      call new_prony(prony, 1.0e9_wp, [2.0e9_wp, 1.0e9_wp, 5.0e8_wp, 1.0e8_wp], &
+         [3.0e4_wp, 1.0e2_wp, 3.0e4_wp, 1.0e6_wp], 0.0_wp, error)
+      call check_split(prony, 1.0e4_wp, "a Prony series")
+      call new_prony(prony, 1.0e9_wp, [2.0e9_wp], [3.0e4_wp], 2.0e3_wp, error)
+      call check_split(prony, 1.0e4_wp, "a dashpot beside a spring and a term")
+      call new_prony(prony, 1.0e9_wp, [real(wp) ::], [real(wp) ::], 2.0e5_wp, error)
+      call check_split(prony, 1.0e4_wp, "a dashpot beside a spring")
+      call new_prony(prony, 0.0_wp, [1.0e9_wp, 2.0e9_wp], [1.0e3_wp, 1.0e5_wp], 0.0_wp, error)
+      call check_split(prony, 1.0e4_wp, "a fluid")
+      call new_prony(prony, 1.0e6_wp, [1.0e9_wp], [1.0e5_wp], 0.0_wp, error)
+      call check_split(prony, 1.0e4_wp, "a mode that creeps")
+      call new_power_law(power, 1.0e9_wp, 6.0e7_wp, 0.3_wp, error)
+      call check_split(power, 1.0e5_wp, "a power law")
+      call new_power_law(power, 0.0_wp, 6.0e7_wp, 0.5_wp, error)
+      call check_split(power, 1.0e5_wp, "a fluid power law")
+      call success(error, "materials are built")
+   end subroutine test_splitting
+
+   !> Compare the receptance of a structure with that of its parts
+   subroutine check_split(material, frequency, name)
+      class(material_t), intent(in) :: material
+      !> A frequency of the motion [rad/s]
+      real(wp), intent(in) :: frequency
+      !> What the material is
+      character(len=*), intent(in) :: name
+
+      ! of a sum of exponentials, which is none with an accuracy of 1e-10, and of partial fractions
+      real(wp), parameter :: of_sum = 1.0e-8_wp, of_parts = 1.0e-11_wp, reference = 1.5e9_wp
+      integer, parameter :: modes = 40
+      type(structure_t) :: body
+      type(vibration_t) :: vibration
+      type(error_t), allocatable :: error
+      real(wp) :: w(modes), yield(modes), worst
+      complex(wp) :: p, whole, parts
+      integer :: i
+
+      w = frequency*[(0.05_wp*real(i, wp)**2, i=0, modes - 1)]
+      yield = [(1.0_wp + 0.5_wp*sin(real(i, wp)), i=1, modes)]
+      call new_structure(body, w**2, 0.04_wp*w, yield, error, material=material, &
+         reference=reference)
+      call success(error, name//": the structure is built")
+      call body%expand(4.0_wp/frequency, 2.0_wp/frequency, 1.0e-10_wp, vibration, error)
+      call success(error, name//": the structure is split")
+      worst = 0.0_wp
+      do i = -2, 6
+         p = frequency*2.0_wp**i*exp((0.0_wp, 1.0_wp)*0.13_wp*real(i, wp))
+         whole = sum(yield/(p**2 + 0.04_wp*w*p + w**2*(material%complex_modulus(p)/reference)))
+         parts = sum((vibration%yield + vibration%kick*(p + vibration%damping)) &
+            /(p**2 + vibration%damping*p + vibration%square)) &
+            + sum(vibration%weight/(p + vibration%rate))
+         worst = max(worst, abs(parts/whole - 1.0_wp))
+      end do
+      call check(worst <= merge(of_sum, of_parts, vibration%error > 0.0_wp), &
+         name//": receptance by parts")
+      call check(sum(vibration%kick) <= 0.0_wp .and. all(vibration%damping >= 0.0_wp), &
+         name//": parts lose energy")
+   end subroutine check_split
    !> Modes of undamped bodies that ring faster than panels follow: what they change is stated. A
    !> rod is a dashpot sqrt(E rho) A until its far end answers
    subroutine test_ringing()

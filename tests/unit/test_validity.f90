@@ -146,18 +146,20 @@ contains
       case (5)
          outcome%highest_mode = 1.0_wp/value
       case (6)
-         outcome%contacts = nint(value)
+         outcome%block_reach = value
       case (7)
-         outcome%weight_ratio = value
+         outcome%contacts = nint(value)
       case (8)
+         outcome%weight_ratio = value
+      case (9)
          ! a mass that is too small is judged as one that is too large
          outcome%mass_ratio = 1.0_wp/value
-      case (9)
+      case (10)
          around%yield_strength = scale
          outcome%mean_pressure = scale*value
-      case (10)
-         outcome%axis_tension = value
       case (11)
+         outcome%axis_tension = value
+      case (12)
          ! below 0.5 the restitution itself does not matter
          outcome%cor_sphere = 0.25_wp
          outcome%cor_deviation = -0.5_wp*value

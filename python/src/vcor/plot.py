@@ -261,15 +261,24 @@ def _check_axes(
 
 
 def _courses(results: list[Result]) -> list[dict[str, Any]]:
-    """Histories up to the end of contact, and after it."""
+    """Histories up to the end of contact, of the last one with a structure, and after it."""
     courses = []
     names = ("indentation", "relative_velocity", "force")
     for result in results:
         history = result.group("history", "time history (a sweep has none)", "time", *names)
-        time, end = history.time.values, result.number("contact_time")
+        time, end = history.time.values, result.number("last_separation")
+        if not np.isfinite(end):
+            end = result.number("contact_time")
         course: dict[str, Any] = {name: history[name].values for name in names}
-        course |= {"end": end, "contact": slice(None), "ghost": slice(0, 0)}
-        if np.isnan(course["relative_velocity"]).all() and "sphere_velocity" in history:
+        course |= {"end": end, "contact": slice(None), "ghost": slice(0, 0), "given": None}
+        struck = "&target" in result.case
+        if struck:
+            # the work of the force on the structure
+            power = course["force"] * history["plate_velocity"].values
+            work = np.cumsum(np.diff(time) * (power[1:] + power[:-1]) / 2)
+            course["given"] = np.insert(work, 0, 0.0)
+            course["relative_velocity"] = history["sphere_velocity"].values
+        elif np.isnan(course["relative_velocity"]).all() and "sphere_velocity" in history:
             # coupled contact: the indentation is the path of the sphere
             course["relative_velocity"] = history["sphere_velocity"].values
         if not (course["relative_velocity"].max() > 0 and course["force"].max() > 0):
@@ -296,9 +305,14 @@ def _history(wishes: _Wishes) -> Figure:
     one = len(courses) == 1
     if one and wishes.given:
         raise UsageError(f"found {option('legends')}, which a history of one file does not show")
+    if one and courses[0]["given"] is not None:
+        names["relative_velocity"] = "velocity of the ball −z′/v₀"
+        if np.isfinite(courses[0]["given"]).all():
+            names["given"] = "energy to the structure W/KE₀"
     made, axes = _new(wishes, 1 if one else 3, 1 if one else 3)
     for i, (result, course) in enumerate(zip(wishes.results, courses, strict=True)):
-        end, cor = factor * course["end"], result.number("cor")
+        end = factor * course["end"]
+        cor = result.number("cor" if course["given"] is None else "cor_sphere")
         ended = np.isfinite(end)
         text = result.text + (
             f": COR {cor:.4g}, t₀ = {end:.4g} {unit}" if ended else ": no separation"
@@ -308,6 +322,8 @@ def _history(wishes: _Wishes) -> Figure:
             size = result.number({"indentation": "max_indentation"}.get(name, "max_force"))
             if name == "relative_velocity" or not np.isfinite(size):
                 size = -course[name][0] if name == "relative_velocity" else course[name].max()
+            if name == "given":
+                size = result.number("initial_energy")
             time, values = factor * course["time"], course[name] / size
             contact, ghost = course["contact"], course["ghost"]
             _curve(axis, number, time[contact], values[contact], shown, linestyle="-")

@@ -20,7 +20,7 @@ module vcor_case_problem
    use vcor_case_cause, only : explain
    use vcor_case_inputs, only : inputs_t, is_same, of_plate, of_sphere, of_target, &
       positive_or_zero, shape_cone, shape_power, shape_punch, shape_sphere, shape_true_sphere, &
-      target_beam, target_none, target_plate, waves_body
+      target_beam, target_block, target_none, target_plate, waves_body
    use vcor_case_structure, only : build_structure, highest_of_list
    use vcor_case_reader, only : read_inputs
    use vcor_case_reading, only : reading_t
@@ -160,13 +160,26 @@ contains
       logical :: is_new
 
       self%impact%target%structure = none_of_it
+      self%impact%face%structure = none_of_it
       if (inputs%target%body == target_none) return
+      if (self%impact%face%has_waves .and. any(inputs%target%body == [target_plate, &
+          target_beam])) then
+         call raise(error, error_input, 'the modes of this body hold the bending that waves = ' &
+            //"'body' holds: expected waves = 'none', or a block, a rod or a list of modes", &
+            about='waves body')
+      else if (self%impact%face%base == base_free .and. self%impact%face%has_waves) then
+         call raise(error, error_input, 'a free plate of this thickness moves beside the ' &
+            //'structure: expected a base, a face without thickness (a half space), or ' &
+            //"waves = 'none'", about='thickness half_thickness waves')
+      end if
+      if (allocated(error)) return
       if (inputs%item(of_target) > 0) call build_material(self%carrier, &
          self%built%material(of_target), inputs%material(of_target), is_new, error)
       if (allocated(error)) error%item = inputs%item(of_target)
       if (allocated(error)) return
       call build_structure(self%impact%target%structure, &
          inputs, self%impact, self%carrier, error)
+      self%impact%face%structure = self%impact%target%structure
       if (.not. allocated(error)) return
       if (.not. allocated(error%about)) return
       if (error%about == 'density') error%item = inputs%item(of_target)
@@ -402,6 +415,9 @@ contains
             around%thickness = inputs%target_thickness()
          around%highest_frequency = highest_of_list(inputs%target)
          around%density = self%plate%density()
+         around%block_mass = none
+         if (inputs%target%body == target_block .and. around%has_body .and. .not. around%on_base) &
+            around%block_mass = inputs%target%mass
          around%base = inputs%base
          if (inputs%base == base_free .and. .not. (inputs%half_thickness > 0.0_wp &
              .or. around%is_panel)) around%base = base_half_space

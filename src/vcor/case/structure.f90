@@ -76,9 +76,9 @@ contains
                //"expected another model, or body = 'block'", about='body')
          else if (.not. material%density() > 0.0_wp) then
             call raise(error, error_input, 'the modes of &target need it', about='density')
-         else if (.not. material%glassy() <= huge(1.0_wp)) then
-            call raise(error, error_input, 'the modes of &target need a material whose modulus ' &
-               //'is finite at the start', about='body')
+         else if (.not. material%glassy() > 0.0_wp) then
+            call raise(error, error_input, 'the modes of &target need a material that is more ' &
+               //'than a dashpot', about='body')
          end if
          if (allocated(error)) return
          if (target%body == target_rod) then

@@ -11,6 +11,7 @@ module vcor_impact_face
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_response, only : base_bonded, base_free, base_half_space, base_sliding, &
       static_response, wave_responses
+   use vcor_impact_structure, only : structure_t
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    implicit none
@@ -30,6 +31,8 @@ module vcor_impact_face
       logical :: has_waves = .false.
       !> Thickness H = 2 h [m], > 0 unless it is a half space
       real(wp) :: thickness = 0.0_wp
+      !> The structure that carries the face, if there is one
+      type(structure_t) :: structure
       !> Material of the plate; unallocated: rigid
       class(material_t), allocatable, private :: plate
       !> Material of the striker, as a half space; unallocated: rigid
@@ -131,17 +134,17 @@ contains
          + 1.0_wp/(self%striker%plane_strain_factor()*self%striker%complex_modulus(s))
    end function local_compliance
 
-   !> Compliance c(s) of what moves as a whole: of a thin plate by its bending waves
+   !> Compliance c(s) of what moves as a whole: of a thin plate by its bending waves, of a structure
    elemental function drift(self, s) result(compliance)
       class(face_t), intent(in) :: self
       !> Laplace variable [1/s]
       complex(wp), intent(in) :: s
-      !> Displacement divided by force [m/N]; 0 unless the base is `base_thin`
+      !> Displacement divided by force [m/N]; 0 without a structure unless the base is `base_thin`
       complex(wp) :: compliance
 
-      compliance = 0.0_wp
+      compliance = self%structure%receptance(s)
       if (self%base == base_thin .and. allocated(self%plate)) compliance = &
-         sqrt(3.0_wp/self%plate%density())/(4.0_wp*self%thickness**2) &
+         compliance + sqrt(3.0_wp/self%plate%density())/(4.0_wp*self%thickness**2) &
          /(s*sqrt(self%plate_modulus(s)))
    end function drift
 

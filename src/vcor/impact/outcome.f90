@@ -110,6 +110,9 @@ module vcor_impact_outcome
       real(wp) :: deflection_ratio = none
       !> Highest frequency of a list of modes, times t0/pi [-]
       real(wp) :: highest_mode = none
+      !> Half of the way of shear waves during the contact over the edge of a cube that is as heavy
+      !> as the block whose half space they fill [-]
+      real(wp) :: block_reach = none
       !> Weight of the sphere divided by the largest force [-]
       real(wp) :: weight_ratio = none
       !> Mass divided by that of a solid ball of the radius and the density of its material [-]
@@ -196,9 +199,9 @@ contains
       end if
       outcome%energy_loss = outcome%hysteresis_energy + outcome%wave_energy
       if (ieee_is_nan(trajectory%state(col_plate, n))) then
-         ! contact and plate solved as one: far away the plate is at rest, and the faces at the edge
-         ! of the contact have no velocity apart
-         outcome%cor = outcome%cor_sphere
+         ! contact and plate solved as one: far away the plate is at rest, or moves as the structure
+         ! that carries it, and the faces at the edge of the contact have no velocity apart
+         if (.not. outcome%has_structure()) outcome%cor = outcome%cor_sphere
          outcome%energy_loss = sum(trajectory%share(0:n)*trajectory%state(col_sphere_velocity, 0:n))
       end if
       outcome%final_energy = outcome%initial_energy*outcome%resilience

@@ -7,19 +7,24 @@
 !> with the modes' frequencies w_n, dampings d_n = 2 zeta_n w_n and yields y_n = 1/m_n, m_n the
 !> modal mass at that point, and the flexibility C_r of the modes left out. w = 0 is motion of a
 !> rigid body, with d > 0 against a dashpot. e* is 1 in an elastic structure. One of a viscoelastic
-!> material, all of whose flexibility is that of modes, has e = E(t)/E_ref, by correspondence:
+!> material, all of whose flexibility is that of modes, has e = E(t)/E_ref, by correspondence; with
+!> its material as a sum of exponentials each mode is an oscillator and exponentials
+!> (`vcor_impact_creep`):
 !>
-!>     e*x = e_0 x + sum_i e_i p_i + e_v x',   p_i' = x' - l_i p_i
+!>     U = C_r F + sum_n eta_n + sum_k z_k,   eta' = v + kick F,   v' = -b eta - a v + q F,
+!>                                            z_k' = r_k F - x_k z_k
 !>
-!> Once the force has ended, the energy E_n of a mode only falls. The struck point is then at most
+!> Once the force has ended, v^2 + b eta^2 of each mode only falls. The struck point then comes at
+!> most
 !>
-!>     reach = min(sum_n sqrt(2 E_n C_n), sqrt(2 sum_n E_n sum_n C_n)),   C_n = y_n/(w_n^2 e_0)
+!>     reach = sum_n sqrt(eta_n^2 + v_n^2/b_n) + sum_k max(0, -z_k)
 !>
-!> away from the place that rigid motion takes it to: a sphere that is further away, and recedes
-!> from it, has left for good.
+!> towards the sphere from the place that rigid motion takes it to: a sphere that is further away,
+!> and recedes from it, has left for good.
 module vcor_impact_structure
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_impact_creep, only : split_modes
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
@@ -46,21 +51,22 @@ module vcor_impact_structure
       procedure :: is_viscoelastic
       procedure :: falls
       procedure :: slowness
+      procedure :: receptance
       procedure :: expand
    end type structure_t
 
    !> A structure with its material as a sum of exponentials
    type :: vibration_t
-      !> Squares of the frequencies [1/s2], dampings, that of a material's dashpot included [1/s],
-      !> and yields [1/kg], shape (modes)
-      real(wp), allocatable :: square(:), damping(:), yield(:)
+      !> Squares b of the frequencies [1/s2], dampings a [1/s], yields q [1/kg] and kicks of the
+      !> oscillators [s/kg], shape (modes)
+      real(wp), allocatable :: square(:), damping(:), yield(:), kick(:)
+      !> Rates x [1/s] and weights r [s/kg] of the exponentials, shape (n); none if the material
+      !> does not relax
+      real(wp), allocatable :: rate(:), weight(:)
       !> Flexibility of the modes left out [m/N]
       real(wp) :: residual = 0.0_wp
-      !> Number of modes, the last ones, each of which stands for many
+      !> Number of oscillators, the last ones, each of which stands for many
       integer :: lumped = 0
-      !> The material: e_0 [-], e_i [-] and l_i [1/s], shape (n); none if it is elastic
-      real(wp) :: equilibrium = 1.0_wp
-      real(wp), allocatable :: modulus(:), rate(:)
       !> Error of the sum [-]
       real(wp) :: error = 0.0_wp
    contains
@@ -75,10 +81,10 @@ module vcor_impact_structure
 
    !> State of a structure
    type :: state_of_modes_t
-      !> Deflections eta [m] and their rates [m/s], shape (modes)
+      !> Deflections eta of the oscillators [m], and v [m/s], shape (modes)
       real(wp), allocatable :: eta(:), rate(:)
-      !> Lags p of the deflections [m], shape (modes, n)
-      real(wp), allocatable :: lag(:, :)
+      !> Deflections z of the exponentials [m], shape (n)
+      real(wp), allocatable :: lag(:)
    end type state_of_modes_t
 
 contains
@@ -154,7 +160,8 @@ contains
       if (allocated(self%square)) falls = any(.not. self%square > 0.0_wp)
    end function falls
 
-   !> Time in which the structure moves with a mass on it: the root of mass times flexibility
+   !> Time in which the structure moves with a mass on it: the root of mass times flexibility, once
+   !> it has relaxed if something is left of its stiffness
    pure function slowness(self, mass) result(time)
       class(structure_t), intent(in) :: self
       !> Mass [kg]
@@ -162,17 +169,44 @@ contains
       !> Time [s]
       real(wp) :: time
 
+      real(wp) :: softer
+
       time = 0.0_wp
       if (.not. allocated(self%square)) return
-      time = sqrt(mass*(self%residual + sum(self%yield/max(self%square, tiny(1.0_wp)), &
+      softer = 1.0_wp
+      if (allocated(self%material)) then
+         if (self%material%rubbery() > 0.0_wp) softer = self%reference/self%material%rubbery()
+      end if
+      time = sqrt(mass*(self%residual + softer*sum(self%yield/max(self%square, tiny(1.0_wp)), &
          self%square > 0.0_wp)))
    end function slowness
 
-   !> Expand the material in a sum of exponentials
-   pure subroutine expand(self, window, accuracy, vibration, error)
+   !> Displacement divided by force in the Laplace domain
+   elemental function receptance(self, s) result(compliance)
+      class(structure_t), intent(in) :: self
+      !> Laplace variable [1/s]
+      complex(wp), intent(in) :: s
+      !> Compliance [m/N]; 0 without a structure
+      complex(wp) :: compliance
+
+      complex(wp) :: modulus
+
+      compliance = 0.0_wp
+      if (.not. allocated(self%square)) return
+      modulus = 1.0_wp
+      if (allocated(self%material)) modulus = self%material%complex_modulus(s)/self%reference
+      compliance = self%residual + sum(self%yield/(s*(s + self%damping) + modulus*self%square))
+   end function receptance
+
+   !> Expand the material in a sum of exponentials. A rule with the error e resolves rates up to
+   !> e^(-1/3) over the window, and lumps those beyond: in a longer window the error must fall with
+   !> the third power of what is brief in it
+   pure subroutine expand(self, window, brief, accuracy, vibration, error)
       class(structure_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
+      !> Time of the changes that it is to resolve [s], > 0, not above the window
+      real(wp), intent(in) :: brief
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
       type(vibration_t), intent(out) :: vibration
@@ -180,25 +214,32 @@ contains
 
       type(exponential_sum_t) :: terms
 
-      vibration%square = self%square
-      vibration%damping = self%damping
-      vibration%yield = self%yield
       vibration%residual = self%residual
       vibration%lumped = self%lumped
-      allocate (vibration%modulus(0), vibration%rate(0))
-      if (.not. allocated(self%material)) return
-      call self%material%exponentials(window, accuracy, terms)
+      if (.not. allocated(self%material)) then
+         vibration%square = self%square
+         vibration%damping = self%damping
+         vibration%yield = self%yield
+         allocate (vibration%kick(size(self%square)), source=0.0_wp)
+         allocate (vibration%rate(0), vibration%weight(0))
+         return
+      end if
+      call self%material%exponentials(window, max(accuracy*(brief/window)**3, &
+         epsilon(1.0_wp)), terms)
+      if (terms%error > 0.0_wp) terms%error = max(terms%error, abs(terms%integral(brief) &
+         /(self%material%integral(brief) + self%material%viscosity) - 1.0_wp))
       if (.not. terms%error < 1.0_wp) then
          call raise(error, error_numerical, 'no sum of exponentials represents the material of ' &
             //'this structure')
          return
       end if
       call terms%scale(1.0_wp/self%reference)
-      vibration%equilibrium = terms%equilibrium
-      vibration%modulus = terms%moduli
-      vibration%rate = terms%rates
       vibration%error = terms%error
-      vibration%damping = vibration%damping + vibration%square*terms%viscosity
+      allocate (vibration%square, vibration%damping, vibration%yield, vibration%kick, &
+         mold=self%square)
+      call split_modes(terms, self%square, self%damping + self%square*terms%viscosity, &
+         self%yield, vibration%damping, vibration%square, vibration%yield, vibration%kick, &
+         vibration%rate, vibration%weight)
    end subroutine expand
 
    !> State of rest
@@ -208,26 +249,20 @@ contains
 
       allocate (state%eta(size(self%square)), source=0.0_wp)
       allocate (state%rate(size(self%square)), source=0.0_wp)
-      allocate (state%lag(size(self%square), size(self%rate)), source=0.0_wp)
+      allocate (state%lag(size(self%rate)), source=0.0_wp)
    end function rest
 
-   !> Kinetic and elastic energy of each mode, that of the springs of its material included
-   pure function energy(self, state) result(of_mode)
+   !> Kinetic and elastic energy of a structure that does not relax
+   pure function energy(self, state)
       class(vibration_t), intent(in) :: self
       type(state_of_modes_t), intent(in) :: state
-      !> Energy [J], shape (modes)
-      real(wp) :: of_mode(size(self%square))
+      !> Energy [J]
+      real(wp) :: energy
 
-      integer :: i
-
-      of_mode = self%equilibrium*state%eta**2
-      do i = 1, size(self%rate)
-         of_mode = of_mode + self%modulus(i)*state%lag(:, i)**2
-      end do
-      of_mode = 0.5_wp/self%yield*(state%rate**2 + self%square*of_mode)
+      energy = sum(0.5_wp/self%yield*(state%rate**2 + self%square*state%eta**2))
    end function energy
 
-   !> Power that the dampings of the modes take
+   !> Power that the dampings of a structure take that does not relax
    pure function power_lost(self, state) result(power)
       class(vibration_t), intent(in) :: self
       type(state_of_modes_t), intent(in) :: state
@@ -238,7 +273,7 @@ contains
    end function power_lost
 
    !> Where the struck point would be if the modes with stiffness were at rest, and those against a
-   !> dashpot had come to rest
+   !> dashpot had come to rest. A fluid keeps its deflection
    pure function rigid_position(self, state) result(position)
       class(vibration_t), intent(in) :: self
       type(state_of_modes_t), intent(in) :: state
@@ -247,7 +282,7 @@ contains
 
       integer :: n
 
-      position = 0.0_wp
+      position = sum(state%lag, .not. self%rate > 0.0_wp)
       do n = 1, size(self%square)
          if (self%square(n) > 0.0_wp) cycle
          position = position + state%eta(n)
@@ -269,31 +304,19 @@ contains
    pure function reach(self, state) result(distance)
       class(vibration_t), intent(in) :: self
       type(state_of_modes_t), intent(in) :: state
-      !> Distance [m]; infinite, a huge number, for a fluid
+      !> Distance [m]
       real(wp) :: distance
 
-      real(wp) :: energy(size(self%square)), one, together, flexibility, spring
       integer :: n
 
-      energy = self%energy(state)
-      distance = 0.0_wp
-      one = 0.0_wp
-      together = 0.0_wp
-      flexibility = 0.0_wp
+      distance = sum(max(0.0_wp, -state%lag), self%rate > 0.0_wp)
       do n = 1, size(self%square)
-         spring = self%square(n)*self%equilibrium
-         if (self%square(n) > 0.0_wp .and. .not. spring > 0.0_wp) then
-            distance = huge(1.0_wp)
-            return
-         else if (spring > 0.0_wp) then
-            one = one + sqrt(2.0_wp*energy(n)*self%yield(n)/spring)
-            together = together + energy(n)
-            flexibility = flexibility + self%yield(n)/spring
+         if (self%square(n) > 0.0_wp) then
+            distance = distance + sqrt(state%eta(n)**2 + state%rate(n)**2/self%square(n))
          else if (self%damping(n) > 0.0_wp) then
             distance = distance + abs(state%rate(n))/self%damping(n)
          end if
       end do
-      distance = distance + min(one, sqrt(2.0_wp*together*flexibility))
    end function reach
 
    !> Whether a sphere without contact never touches the structure again, weight apart

@@ -62,6 +62,8 @@ module vcor_impact_validity
       ! its inverse: without the modes that a list leaves out e errs by 1e-2 at 3 and 2.3e-3 at 10,
       ! with their flexibility by 1.7e-3 and 2e-5, on a square plate of inelasticity 0.2
       threshold_t('highest_mode', 0.1_wp, 0.33333_wp), &
+      ! waves are back from the other side of the block while the contact lasts; it is never outside
+      threshold_t('block_reach', 1.0_wp, 1.0e9_wp), &
       ! each further contact multiplies the effect of damping and phase; it is never outside
       threshold_t('contacts', 2.0_wp, 1.0e9_wp), &
       ! the weight divided by the force that reverses the motion
@@ -113,6 +115,8 @@ module vcor_impact_validity
       logical :: is_panel = .false., is_beam = .false.
       !> Highest frequency of a list of modes without the flexibility of those left out [rad/s]
       real(wp) :: highest_frequency = none
+      !> Mass of a block whose face is a half space with waves [kg]
+      real(wp) :: block_mass = none
       !> One of the `base_*` constants of `vcor_impact_face`: what is below the face
       integer :: base = base_half_space
       !> Response of the face, as far as impacts have needed it
@@ -210,6 +214,8 @@ contains
       call compare_with_exact(outcome, impact, around, sphere, plate, carrier, modulus, &
          plate_modulus)
       outcome%highest_mode = around%highest_frequency*outcome%contact_time/pi
+      if (around%density > 0.0_wp) outcome%block_reach = outcome%needed_extent &
+         /(around%block_mass/around%density)**(1.0_wp/3.0_wp)
       call judge(outcome, around)
    end subroutine assess
 
@@ -336,6 +342,7 @@ contains
       values = [merge(none, outcome%contact_ratio, around%is_true), &
          outcome%layer_strain, outcome%needed_extent/around%extent, &
          outcome%deflection_ratio, 1.0_wp/outcome%highest_mode, &
+         outcome%block_reach, &
          merge(real(outcome%contacts, wp), none, outcome%contacts > 1), &
          outcome%weight_ratio, outcome%mass_ratio, &
          outcome%mean_pressure/around%yield_strength, &

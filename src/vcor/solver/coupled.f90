@@ -21,6 +21,7 @@ module vcor_solver_coupled
       scale_t, scales, with_more_hats
    use vcor_solver_coupled_record, only : record, record_contact
    use vcor_solver_coupled_store, only : new_store, store_t
+   use vcor_solver_coupled_structure, only : leave_structure
    use vcor_solver_type, only : as_text, default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -210,6 +211,9 @@ contains
          peak_window = around(now%time_of_max_force, now%fine%dt, search%scale)
       if (peak_window > 0.0_wp) call resolve_peak(self, impact, search, peak_window, trajectory, &
          error)
+      if (allocated(error)) return
+      if (impact%target%structure%exists()) &
+         call leave_structure(impact, self%settings%accuracy, trajectory, error)
       if (allocated(error)) return
       self%found = plan_t(level, search%window, search%radius, peak_window)
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting

@@ -127,11 +127,9 @@ module vcor_solver_features
       refusal_t([paper, 0, 0], of_hereditary_plate, 'adams_bashforth differentiates ' &
       //"U = alpha(t) I, which a hereditary plate does not have; use method = 'ive', or " &
       //"'direct' with scheme = 'product'", 'waves scheme'), &
-      refusal_t([of_body, of_thin_plate, 0], of_structure, 'these waves are those of an infinite ' &
+      refusal_t([of_thin_plate, 0, 0], of_structure, 'these waves are those of an infinite ' &
       //"plate, the structure of &target is a finite one: expected waves = 'none', or no &target", &
       'waves body'), &
-      refusal_t([coupled, 0, 0], of_structure, &
-      "a struck structure is solved by method = 'ive' or 'direct'", 'method body'), &
       refusal_t([paper, 0, 0], of_structure, "adams_bashforth marches the paper's wave equation " &
       //"of a plate; a struck structure is solved by 'ive', or 'direct' with scheme = 'product'", &
       'scheme body'), &

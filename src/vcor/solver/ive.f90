@@ -194,7 +194,8 @@ contains
       end if
       if (impact%target%structure%exists()) then
          allocate (sums%vibration)
-         call impact%target%structure%expand(window, sum_share*accuracy, sums%vibration, error)
+         call impact%target%structure%expand(window, impact%law%contact_time &
+            *impact%time_scale(), sum_share*accuracy, sums%vibration, error)
       end if
       if (.not. impact%target%hereditary()) return
       call impact%target%response(window, sum_share*accuracy, sums%plate)

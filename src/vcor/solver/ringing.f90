@@ -70,7 +70,7 @@ contains
       total = size(vibration%square)
       self%modes = total - vibration%lumped
       self%time_scale = time_scale
-      self%frequency = sqrt(vibration%square*(vibration%equilibrium + sum(vibration%modulus)))
+      self%frequency = sqrt(vibration%square)
       self%decay = 0.5_wp*vibration%damping
       allocate (self%amplitude(total), self%velocity(total), self%missed(self%modes), &
          source=0.0_wp)

@@ -200,6 +200,8 @@ contains
          outcome%deflection_ratio)
       call list%add('highest_mode', 'w_m/w_0', '1', &
          'highest mode of a file, times t0/pi', outcome%highest_mode)
+      call list%add('block_reach', 'c_s t0/2L', '1', &
+         'reach of the waves / size of the block that they fill', outcome%block_reach)
       call list%add('weight_ratio', 'mg/F', '1', 'ratio of the weight of the sphere to max_force', &
          outcome%weight_ratio)
       call list%add('mass_ratio', 'm/m_s', '1', 'mass / mass of a solid ball of its density', &

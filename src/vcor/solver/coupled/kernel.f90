@@ -56,8 +56,10 @@ module vcor_solver_coupled_kernel
       !> Later weights of the hats [m/N], that of lag n from hat j to hat i at
       !> (i, j + hats (steps - 1 - n)), shape (hats, hats (steps - 1))
       real(wp), allocatable :: later(:, :)
-      !> What the face is at the frequencies of the mesh
+      !> What the face is at the frequencies of the mesh, and the compliance of what moves as a
+      !> whole
       type(moduli_t) :: moduli
+      complex(wp), allocatable, private :: drift(:)
    contains
       procedure :: is_for
       procedure :: numbers
@@ -90,7 +92,18 @@ contains
       yes = self%mesh%springs == mesh%springs .and. self%mesh%hats == mesh%hats &
          .and. .not. abs(self%mesh%radius - mesh%radius) > 0.0_wp
       if (yes) yes = self%moduli%is_for(face, mesh%steps, mesh%window)
+      if (yes) yes = all(abs(self%drift - drift_of(face, self)) <= 0.0_wp)
    end function is_for
+
+   !> Compliance of what moves as a whole, at the frequencies of the mesh
+   pure function drift_of(face, kernel) result(drift)
+      type(face_t), intent(in) :: face
+      class(kernel_t), intent(in) :: kernel
+      !> Displacement over force [m/N]
+      complex(wp) :: drift(kernel%mesh%steps/2 + 1)
+
+      drift = face%drift(nodes(kernel%mesh%steps, 1.0_wp/kernel%rate()))
+   end function drift_of
 
    !> Laplace variable of a step, 1/dt
    pure function rate(self)
@@ -145,7 +158,6 @@ contains
       ! up to which a mesh with twice the elements of hats needs the spectrum, 2^1.5, and more
       real(wp), parameter :: shared = 3.0_wp
       complex(wp) :: response(pair(self%mesh%hats, self%mesh%hats), 0:self%mesh%steps/2)
-      complex(wp) :: drift(0:self%mesh%steps/2)
       real(wp), allocatable :: products(:, :)
       real(wp) :: last
       integer :: l
@@ -168,9 +180,9 @@ contains
             response(:, l) = response(:, l)/self%moduli%modulus(l)
          end do
       end if
-      drift = face%drift(nodes(self%mesh%steps, 1.0_wp/self%rate()))
+      self%drift = drift_of(face, self)
       do l = 0, ubound(response, 2)
-         response(:, l) = response(:, l) + drift(l)
+         response(:, l) = response(:, l) + self%drift(l + 1)
       end do
       call add_weights(self, response)
    end subroutine add_response

@@ -57,7 +57,7 @@ module vcor_solver_direct_contacts
       !> Modes of the structure and springs of the contact
       type(modes_t) :: modes
       type(row_t) :: row
-      !> Whether no mode is a rigid motion
+      !> Whether no mode is a rigid motion, nor a part a flow
       logical :: is_held = .false.
       !> Flexibility that follows at once [m/N]
       real(wp) :: residual = 0.0_wp
@@ -191,16 +191,20 @@ contains
       !> Expand contact and structure in sums of exponentials
       subroutine find_sums()
 
-         real(wp) :: accuracy
+         ! accuracy of the numerical inversion of a pair
+         real(wp), parameter :: rounding = 3.0e-12_wp
+         real(wp) :: accuracy, brief
 
          accuracy = sum_share*max(settings%accuracy, epsilon(1.0_wp))
-         call impact%kernel_exponentials(window, accuracy, terms)
+         brief = impact%law%contact_time*impact%time_scale()
+         ! as in `expand` of a structure
+         call impact%kernel_exponentials(window, max(accuracy*(brief/window)**3, rounding), terms)
          if (.not. terms%error < 1.0_wp) then
             call raise(error, error_numerical, 'no sum of exponentials represents the kernel ' &
                //'of this contact')
             return
          end if
-         call impact%target%structure%expand(window, accuracy, vibration, error)
+         call impact%target%structure%expand(window, brief, accuracy, vibration, error)
          exact = .not. max(terms%error, vibration%error) > 0.0_wp
       end subroutine find_sums
 
@@ -357,7 +361,7 @@ contains
 
       self%dt = dt
       self%residual = vibration%residual
-      self%is_held = all(vibration%square > 0.0_wp)
+      self%is_held = all(vibration%square > 0.0_wp) .and. all(vibration%rate > 0.0_wp)
       call self%modes%prepare(vibration, dt)
       call self%row%prepare(terms, impact%law, dt, 0.0_wp)
       if (.not. self%residual > 0.0_wp) self%force(1) = impact%first_force()
@@ -494,7 +498,7 @@ contains
       modes = run%modes%state()
       trajectory%rigid_velocity = vibration%rigid_velocity(modes)
       trajectory%structure_energy = unset
-      if (size(vibration%rate) == 0) trajectory%structure_energy = sum(vibration%energy(modes)) &
+      if (size(vibration%rate) == 0) trajectory%structure_energy = vibration%energy(modes) &
          + back*vibration%power_lost(modes)
       trajectory%work = run%work
       state = run%node(impact)

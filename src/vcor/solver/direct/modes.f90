@@ -1,6 +1,7 @@
 !> Modes of a struck structure on equal steps, exactly for a force that is a parabola over each step
 !>
-!> The state y of a mode is its deflection, its rate and the lags of its material. Over a step
+!> The state y of an oscillator (`vcor_impact_structure`) is its eta and v, that of an exponential
+!> its z. Over a step
 !>
 !>     y_n = A y_{n-1} + B_0 F_{n-1} + B_1 F_n + B_2 (F_n - 2 F_{n-1} + F_{n-2})
 !>
@@ -16,17 +17,28 @@ module vcor_solver_direct_modes
 
    public :: modes_t
 
+   !> The parts of the structure of one kind at the newest node
+   type :: parts_t
+      !> Their state, shape (number, components), and the same at the node being solved, without the
+      !> force there
+      real(wp), allocatable :: y(:, :), known(:, :)
+      !> Step from state to state, shape (number, components, components)
+      real(wp), allocatable :: a(:, :, :)
+      !> Responses to the force at the start of the step and at the node before, shape
+      !> (number, components), and at its end
+      real(wp), allocatable :: start(:, :), before(:, :), end(:, :)
+   contains
+      procedure, private :: make_room
+      procedure, private :: set_step
+      procedure, private :: step
+   end type parts_t
+
    !> The modes at the newest node
    type :: modes_t
-      !> The deflections [m], their rates [m/s] and lags [m], shape (modes, parts)
-      real(wp), allocatable, private :: y(:, :)
-      !> The same at the node being solved, without the force there
-      real(wp), allocatable, private :: known(:, :)
-      !> Step from state to state, shape (modes, parts, parts)
-      real(wp), allocatable, private :: a(:, :, :)
-      !> Responses to the force at the start of the step and at the node before, shape
-      !> (modes, parts), and at its end
-      real(wp), allocatable, private :: start(:, :), before(:, :), end(:, :)
+      !> Oscillators [m, m/s] and exponentials [m]
+      type(parts_t), private :: oscillators, exponentials
+      !> Rates of the exponentials [1/s], shape (n)
+      real(wp), allocatable, private :: rates(:)
       !> Deflection by the force at the node being solved [m/N]
       real(wp) :: yield = 0.0_wp
       !> Number of multiplications of a step
@@ -50,66 +62,85 @@ contains
       !> Time step [s]
       real(wp), intent(in) :: dt
 
+      ! largest frequency times step: a third of that of a force which alternates from node to node
+      real(wp), parameter :: fastest = 1.0_wp
+      real(wp) :: matrix(5, 5), unit
+      integer :: n, first_lumped
+
+      first_lumped = size(vibration%square) + 1
+      ! those of a material that relaxes are damped
+      if (size(vibration%rate) == 0) first_lumped = first_lumped - vibration%lumped
+      call self%oscillators%make_room(size(vibration%square), 2)
+      call self%exponentials%make_room(size(vibration%rate), 1)
+      self%rates = vibration%rate
+      do n = 1, size(vibration%square)
+         associate (square => vibration%square(n), damping => vibration%damping(n), &
+                    yield => vibration%yield(n), kick => vibration%kick(n))
+            if ((sqrt(square)*dt > fastest .or. n >= first_lumped) .and. damping**2 < square) then
+               self%oscillators%end(n, :) = [(yield + damping*kick)/square, -kick]
+               cycle
+            end if
+            ! deflections in a unit that makes the matrix as small as it can be
+            unit = max(sqrt(square), 1.0_wp/dt)
+            matrix = 0.0_wp
+            matrix(1, 2:3) = [unit, unit*kick]
+            matrix(2, 1:3) = [-square/unit, -damping, yield]
+            call self%oscillators%set_step(n, dt, matrix)
+            self%oscillators%a(n, 1, 2) = self%oscillators%a(n, 1, 2)/unit
+            self%oscillators%a(n, 2, 1) = self%oscillators%a(n, 2, 1)*unit
+            self%oscillators%start(n, 1) = self%oscillators%start(n, 1)/unit
+            self%oscillators%before(n, 1) = self%oscillators%before(n, 1)/unit
+            self%oscillators%end(n, 1) = self%oscillators%end(n, 1)/unit
+         end associate
+      end do
+      do n = 1, size(vibration%rate)
+         matrix(:4, :4) = 0.0_wp
+         matrix(1, :2) = [-vibration%rate(n), vibration%weight(n)]
+         call self%exponentials%set_step(n, dt, matrix(:4, :4))
+      end do
+      self%yield = sum(self%oscillators%end(:, 1)) + sum(self%exponentials%end(:, 1))
+      self%work = real(10*size(vibration%square) + 4*size(vibration%rate), wp)
+   end subroutine prepare
+
+   !> Make room for parts at rest
+   subroutine make_room(self, number, components)
+      class(parts_t), intent(inout) :: self
+      integer, intent(in) :: number, components
+
+      allocate (self%y(number, components), self%known(number, components), &
+         self%start(number, components), self%end(number, components), &
+         self%before(number, components), source=0.0_wp)
+      allocate (self%a(number, components, components), source=0.0_wp)
+   end subroutine make_room
+
+   !> Set the step of a part from the matrix of its differential equations
+   subroutine set_step(self, n, dt, matrix)
+      class(parts_t), intent(inout) :: self
+      !> Number of the part
+      integer, intent(in) :: n
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Matrix of the state [1/s], of the force in the next column, and room for two columns and
+      !> three rows; destroyed
+      real(wp), intent(inout) :: matrix(:, :)
+
       ! responses to a force that falls from 1 to 0, that rises to 1, and (x^2 - x)/2
       real(wp), parameter :: force(3, 3) = reshape([1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
          0.0_wp, 0.0_wp, -0.5_wp, 1.0_wp], [3, 3])
-      ! largest frequency times step: a third of that of a force which alternates from node to node
-      real(wp), parameter :: fastest = 1.0_wp
-      real(wp), allocatable :: matrix(:, :), answer(:, :)
-      real(wp) :: unit
-      integer :: modes, parts, n, i
+      real(wp) :: answer(size(self%y, 2), 3)
+      integer :: k
 
-      modes = size(vibration%square)
-      parts = 2 + size(vibration%rate)
-      allocate (self%y(modes, parts), source=0.0_wp)
-      allocate (self%known(modes, parts), source=0.0_wp)
-      allocate (self%a(modes, parts, parts), self%start(modes, parts), self%end(modes, parts), &
-         self%before(modes, parts), matrix(parts + 3, parts + 3), answer(parts, 3))
-      do n = 1, modes
-         ! those of a material that relaxes creep, and are damped
-         if ((sqrt(vibration%square(n))*dt > fastest .or. n > modes - vibration%lumped) &
-             .and. parts == 2 .and. vibration%damping(n)**2 < vibration%square(n)) then
-            self%a(n, :, :) = 0.0_wp
-            self%start(n, :) = 0.0_wp
-            self%before(n, :) = 0.0_wp
-            self%end(n, :) = 0.0_wp
-            self%end(n, 1) = vibration%yield(n)/vibration%square(n)
-            cycle
-         end if
-         ! deflections in a unit that makes the matrix as small as it can be
-         unit = max(sqrt(vibration%square(n)), 1.0_wp/dt)
-         matrix = 0.0_wp
-         matrix(1, 2) = unit
-         matrix(2, 1) = -vibration%square(n)*vibration%equilibrium/unit
-         matrix(2, 2) = -vibration%damping(n)
-         do i = 1, size(vibration%rate)
-            matrix(2, 2 + i) = -vibration%square(n)*vibration%modulus(i)/unit
-            matrix(2 + i, 2) = unit
-            matrix(2 + i, 2 + i) = -vibration%rate(i)
-         end do
-         matrix(2, parts + 1) = vibration%yield(n)
-         matrix = dt*matrix
-         matrix(parts + 1, parts + 2) = 1.0_wp
-         matrix(parts + 2, parts + 3) = 1.0_wp
-         call exponentiate(matrix)
-         answer = matmul(matrix(:parts, parts + 1:), force)
-         do i = 1, parts
-            if (i /= 2) then
-               matrix(i, :) = matrix(i, :)/unit
-               answer(i, :) = answer(i, :)/unit
-            end if
-         end do
-         do i = 1, parts
-            if (i /= 2) matrix(:, i) = matrix(:, i)*unit
-         end do
-         self%a(n, :, :) = matrix(:parts, :parts)
-         self%start(n, :) = answer(:, 1) - 2.0_wp*answer(:, 3)
-         self%before(n, :) = answer(:, 3)
-         self%end(n, :) = answer(:, 2) + answer(:, 3)
-      end do
-      self%yield = sum(self%end(:, 1))
-      self%work = real(modes*parts*(parts + 3), wp)
-   end subroutine prepare
+      k = size(self%y, 2)
+      matrix = dt*matrix
+      matrix(k + 1, k + 2) = 1.0_wp
+      matrix(k + 2, k + 3) = 1.0_wp
+      call exponentiate(matrix)
+      answer = matmul(matrix(:k, k + 1:), force)
+      self%a(n, :, :) = matrix(:k, :k)
+      self%start(n, :) = answer(:, 1) - 2.0_wp*answer(:, 3)
+      self%before(n, :) = answer(:, 3)
+      self%end(n, :) = answer(:, 2) + answer(:, 3)
+   end subroutine set_step
 
    !> Replace a matrix by its exponential: Taylor's series of the matrix over a power of two,
    !> squared
@@ -144,9 +175,9 @@ contains
       class(modes_t), intent(inout) :: self
       type(state_of_modes_t), intent(in) :: state
 
-      self%y(:, 1) = state%eta
-      self%y(:, 2) = state%rate
-      self%y(:, 3:) = state%lag
+      self%oscillators%y(:, 1) = state%eta
+      self%oscillators%y(:, 2) = state%rate
+      self%exponentials%y(:, 1) = state%lag
    end subroutine set
 
    !> Advance to the next node without the force there
@@ -155,13 +186,23 @@ contains
       !> Force at the last node and the node before [N]
       real(wp), intent(in) :: force(2)
 
+      call self%oscillators%step(force)
+      call self%exponentials%step(force)
+   end subroutine advance
+
+   !> Advance parts to the next node without the force there
+   subroutine step(self, force)
+      class(parts_t), intent(inout) :: self
+      !> Force at the last node and the node before [N]
+      real(wp), intent(in) :: force(2)
+
       integer :: i, j, n
 
       do i = 1, size(self%y, 2)
          do n = 1, size(self%y, 1)
-            self%known(n, i) = self%a(n, i, 1)*self%y(n, 1) + self%a(n, i, 2)*self%y(n, 2)
+            self%known(n, i) = self%a(n, i, 1)*self%y(n, 1)
          end do
-         do j = 3, size(self%y, 2)
+         do j = 2, size(self%y, 2)
             do n = 1, size(self%y, 1)
                self%known(n, i) = self%known(n, i) + self%a(n, i, j)*self%y(n, j)
             end do
@@ -173,7 +214,7 @@ contains
             end do
          end if
       end do
-   end subroutine advance
+   end subroutine step
 
    !> Complete the state with the force at the new node
    subroutine accept(self, force)
@@ -181,11 +222,14 @@ contains
       !> Force there [N]
       real(wp), intent(in) :: force
 
-      if (force > 0.0_wp) then
-         self%y = self%known + self%end*force
-      else
-         self%y = self%known
-      end if
+      associate (one => self%oscillators, other => self%exponentials)
+         one%y = one%known
+         other%y = other%known
+         if (force > 0.0_wp) then
+            one%y = one%y + one%end*force
+            other%y = other%y + other%end*force
+         end if
+      end associate
    end subroutine accept
 
    !> Deflection at the node being solved without the force there
@@ -194,7 +238,7 @@ contains
       !> Deflection [m]
       real(wp) :: deflection
 
-      deflection = total(self%known(:, 1))
+      deflection = total(self%oscillators%known(:, 1)) + total(self%exponentials%known(:, 1))
    end function deflection
 
    !> Velocity of the struck point in the modes at the newest node
@@ -203,7 +247,7 @@ contains
       !> Velocity [m/s]
       real(wp) :: rate
 
-      rate = total(self%y(:, 2))
+      rate = total(self%oscillators%y(:, 2)) - sum(self%rates*self%exponentials%y(:, 1))
    end function rate
 
    !> Sum of many numbers, in parts that do not wait for each other
@@ -228,9 +272,9 @@ contains
       class(modes_t), intent(in) :: self
       type(state_of_modes_t) :: state
 
-      allocate (state%eta, source=self%y(:, 1))
-      allocate (state%rate, source=self%y(:, 2))
-      allocate (state%lag, source=self%y(:, 3:))
+      allocate (state%eta, source=self%oscillators%y(:, 1))
+      allocate (state%rate, source=self%oscillators%y(:, 2))
+      allocate (state%lag, source=self%exponentials%y(:, 1))
    end function state
 
 end module vcor_solver_direct_modes

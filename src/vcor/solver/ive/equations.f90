@@ -399,8 +399,8 @@ contains
                start%plate_lag, panel%force(1:n))
          else if (allocated(self%sums%vibration)) then
             associate (map => self%rule%map(panel%step%kind))
-               panel%drift(n) = panel%drift(n) + rate_at_start(start%modes) &
-                  *(1.0_wp - sum(real(map%last*map%left_one, wp)))
+               panel%drift(n) = panel%drift(n) + rate_at_start(self%sums%vibration, &
+                  start%modes)*(1.0_wp - sum(real(map%last*map%left_one, wp)))
             end associate
          end if
          panel%t1(n) = sum(self%rule%end_weight(0:n - 1)*panel%t1(0:n - 1))

@@ -1,9 +1,10 @@
 !> Modes of a struck structure in a panel, eliminated
 !>
-!> With the integration matrix H of the panel the rate of a mode at the stages is
+!> With the integration matrix H of the panel the parts of a structure (`vcor_impact_structure`)
+!> move at the stages by
 !>
-!>     eta' = D^-1 [eta_0' - w^2 H (e_0 eta_0 + sum_i e_i (1 + l_i H)^-1 p_i,0) + y H F],
-!>     D = 1 + d H + w^2 H^2 (e_0 + sum_i e_i (1 + l_i H)^-1),
+!>     v = D^-1 [v_0 - b H eta_0 + (q - b kick H) H F],   D = 1 + a H + b H^2
+!>     z = (1 + x H)^-1 (z_0 + r H F),   U' = sum v - sum x z,
 !>
 !> one more function of H that adds to the response P of a plate with memory, U' = alpha F + P H F +
 !> past. So a mode costs a few operations for each eigenvalue of H whatever its frequency and
@@ -33,105 +34,70 @@ contains
       !> Velocity [m/s]
       complex(wp), intent(inout) :: past(slots)
 
-      complex(wp) :: modulus(slots), share(slots, size(vibration%rate)), inverse(slots)
       real(wp), dimension(slots) :: x, y, xx, xy, r, s, b, c
-      real(wp) :: one, other, norm, pull, free
+      real(wp) :: one, other, norm, pull, free, kick, gain
       integer :: n, m
 
-      if (size(vibration%rate) == 0) then
-         ! elastic: in real numbers, the loop over the eigenvalues innermost
-         x = real(eigenvalue, wp)
-         y = aimag(eigenvalue)
-         xx = x*x - y*y
-         xy = 2.0_wp*x*y
-         r = 0.0_wp
-         s = 0.0_wp
-         b = 0.0_wp
-         c = 0.0_wp
-         do n = 1, size(vibration%square)
-            associate (square => vibration%square(n), damping => vibration%damping(n), &
-                       yield => vibration%yield(n), rate => state%rate(n))
-               pull = square*state%eta(n)
-               do m = 1, slots
-                  one = 1.0_wp + damping*x(m) + square*xx(m)
-                  other = damping*y(m) + square*xy(m)
-                  norm = 1.0_wp/(one*one + other*other)
-                  one = one*norm
-                  other = other*norm
-                  r(m) = r(m) + yield*one
-                  s(m) = s(m) - yield*other
-                  free = rate - pull*x(m)
-                  b(m) = b(m) + one*free - other*pull*y(m)
-                  c(m) = c(m) - one*pull*y(m) - other*free
-               end do
-            end associate
-         end do
-         response = response + cmplx(r, s, wp)
-         past = past + cmplx(b, c, wp)
-      else
-         call find_modulus(vibration, eigenvalue, modulus, share)
-         do n = 1, size(vibration%square)
-            inverse = 1.0_wp/(1.0_wp + eigenvalue*(vibration%damping(n) &
-               + vibration%square(n)*eigenvalue*modulus))
-            response = response + vibration%yield(n)*inverse
-            past = past + inverse*free_rate(vibration, state, n, eigenvalue, share)
-         end do
-      end if
+      ! in real numbers, the loop over the eigenvalues innermost
+      x = real(eigenvalue, wp)
+      y = aimag(eigenvalue)
+      xx = x*x - y*y
+      xy = 2.0_wp*x*y
+      r = 0.0_wp
+      s = 0.0_wp
+      b = 0.0_wp
+      c = 0.0_wp
+      do n = 1, size(vibration%square)
+         associate (square => vibration%square(n), damping => vibration%damping(n), &
+                    yield => vibration%yield(n), rate => state%rate(n))
+            pull = square*state%eta(n)
+            kick = square*vibration%kick(n)
+            do m = 1, slots
+               one = 1.0_wp + damping*x(m) + square*xx(m)
+               other = damping*y(m) + square*xy(m)
+               norm = 1.0_wp/(one*one + other*other)
+               one = one*norm
+               other = other*norm
+               gain = yield - kick*x(m)
+               r(m) = r(m) + gain*one - kick*y(m)*other
+               s(m) = s(m) - gain*other - kick*y(m)*one
+               free = rate - pull*x(m)
+               b(m) = b(m) + one*free - other*pull*y(m)
+               c(m) = c(m) - one*pull*y(m) - other*free
+            end do
+         end associate
+      end do
+      do n = 1, size(vibration%rate)
+         associate (rate => vibration%rate(n))
+            do m = 1, slots
+               one = 1.0_wp + rate*x(m)
+               other = rate*y(m)
+               norm = rate/(one*one + other*other)
+               one = one*norm
+               other = other*norm
+               r(m) = r(m) - vibration%weight(n)*one
+               s(m) = s(m) + vibration%weight(n)*other
+               b(m) = b(m) - state%lag(n)*one
+               c(m) = c(m) + state%lag(n)*other
+            end do
+         end associate
+      end do
+      response = response + cmplx(r, s, wp)
+      past = past + cmplx(b, c, wp)
    end subroutine add_modes
 
-   !> e_0 + sum_i e_i (1 + l_i H)^-1, and the terms of the sum
-   pure subroutine find_modulus(vibration, eigenvalue, modulus, share)
-      type(vibration_t), intent(in) :: vibration
-      !> Eigenvalues of H [s]
-      complex(wp), intent(in) :: eigenvalue(slots)
-      !> Sum [-]
-      complex(wp), intent(out) :: modulus(slots)
-      !> Its terms [-], shape (slots, n)
-      complex(wp), intent(out) :: share(:, :)
-
-      integer :: i
-
-      modulus = vibration%equilibrium
-      do i = 1, size(vibration%rate)
-         share(:, i) = vibration%modulus(i)/(1.0_wp + vibration%rate(i)*eigenvalue)
-         modulus = modulus + share(:, i)
-      end do
-   end subroutine find_modulus
-
-   !> eta_0' - w^2 H (e_0 eta_0 + sum_i e_i (1 + l_i H)^-1 p_i,0) of a mode
-   pure function free_rate(vibration, state, n, eigenvalue, share) result(rate)
-      type(vibration_t), intent(in) :: vibration
-      !> State at the start of the panel
-      type(state_of_modes_t), intent(in) :: state
-      !> Mode
-      integer, intent(in) :: n
-      !> Eigenvalues of H [s]
-      complex(wp), intent(in) :: eigenvalue(slots)
-      !> e_i (1 + l_i H)^-1 [-]
-      complex(wp), intent(in) :: share(:, :)
-      !> Rate [m/s]
-      complex(wp) :: rate(slots)
-
-      integer :: i
-
-      rate = vibration%equilibrium*state%eta(n)
-      do i = 1, size(vibration%rate)
-         rate = rate + share(:, i)*state%lag(n, i)
-      end do
-      rate = state%rate(n) - vibration%square(n)*eigenvalue*rate
-   end function free_rate
-
    !> Velocity of the struck point at the start of a panel without that by its force, alpha F
-   pure function rate_at_start(state) result(rate)
+   pure function rate_at_start(vibration, state) result(rate)
+      type(vibration_t), intent(in) :: vibration
       !> State at the start of the panel
       type(state_of_modes_t), intent(in) :: state
       !> Velocity [m/s]
       real(wp) :: rate
 
-      rate = sum(state%rate)
+      rate = sum(state%rate) - sum(vibration%rate*state%lag)
    end function rate_at_start
 
-   !> State at the end of a panel, and what the dampings take
+   !> State at the end of a panel, and what the dampings take of a structure that does not relax
    pure subroutine advance_modes(map, duration, vibration, gained, weight, state, lost)
       type(map_t), intent(in) :: map
       !> Duration of the panel [s]
@@ -146,29 +112,30 @@ contains
       !> Energy lost in the dampings, to which that in the panel is added [J]
       real(wp), intent(inout) :: lost
 
-      complex(wp), dimension(slots) :: eigenvalue, impulse, modulus, rate
-      complex(wp) :: share(slots, size(vibration%rate))
+      complex(wp), dimension(slots) :: eigenvalue, impulse, rate
       real(wp) :: left
-      integer :: n, i
+      integer :: n
 
       eigenvalue = duration*map%eigenvalue
       impulse = map%decompose(gained)
-      call find_modulus(vibration, eigenvalue, modulus, share)
       ! share of the eigenvalue 0 of a map that is stationary at the end
       left = 1.0_wp - sum(real(map%last*map%left_one, wp))
       do n = 1, size(vibration%square)
-         rate = (free_rate(vibration, state, n, eigenvalue, share)*map%left_one &
-            + vibration%yield(n)*impulse)/(1.0_wp + eigenvalue*(vibration%damping(n) &
-            + vibration%square(n)*eigenvalue*modulus))
-         do i = 1, size(vibration%rate)
-            state%lag(n, i) = left*state%lag(n, i) + sum(real(map%last*(eigenvalue*rate &
-               + state%lag(n, i)*map%left_one)/(1.0_wp + vibration%rate(i)*eigenvalue), wp))
-         end do
-         ! the last stage of a panel in which time stands still at the end has no weight
-         if (vibration%damping(n) > 0.0_wp) lost = lost + vibration%damping(n)/vibration%yield(n) &
-            *sum(weight*map%compose(rate)**2)
-         state%eta(n) = state%eta(n) + sum(real(map%last*eigenvalue*rate, wp))
-         state%rate(n) = left*state%rate(n) + sum(real(map%last*rate, wp))
+         associate (square => vibration%square(n), damping => vibration%damping(n), &
+                    kick => vibration%kick(n))
+            rate = ((state%rate(n) - square*eigenvalue*state%eta(n))*map%left_one &
+               + (vibration%yield(n) - square*kick*eigenvalue)*impulse) &
+               /(1.0_wp + eigenvalue*(damping + square*eigenvalue))
+            ! the last stage of a panel in which time stands still at the end has no weight
+            if (damping > 0.0_wp .and. size(vibration%rate) == 0) lost = lost &
+               + damping/vibration%yield(n)*sum(weight*map%compose(rate)**2)
+            state%eta(n) = state%eta(n) + sum(real(map%last*(eigenvalue*rate + kick*impulse), wp))
+            state%rate(n) = left*state%rate(n) + sum(real(map%last*rate, wp))
+         end associate
+      end do
+      do n = 1, size(vibration%rate)
+         state%lag(n) = left*state%lag(n) + sum(real(map%last*(state%lag(n)*map%left_one &
+            + vibration%weight(n)*impulse)/(1.0_wp + vibration%rate(n)*eigenvalue), wp))
       end do
    end subroutine advance_modes
 
