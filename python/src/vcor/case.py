@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 
 #: Time that a call of the library should take [s]: what Ctrl-C waits for
 _CHUNK_TIME = 0.3
-#: Status of a point whose values make no impact
-_INVALID = 3
+#: Status of an impact with a result, and of a point whose values make no impact
+SEPARATED, INVALID = 0, 3
 
 
 def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Case:
@@ -292,7 +292,7 @@ class Case:
         wanted = [*_coverage.with_judged(names), "status"]
         found, remark = self._solve(list(point), row, wanted, 1)
         if remark:
-            kind = InputError if found[0, -1] == _INVALID else NumericalError
+            kind = InputError if found[0, -1] == INVALID else NumericalError
             raise kind(f"{self.name}: {_reason(remark)}")
         results = found[0].tolist()
         made = _coverage.Numbers(
