@@ -65,7 +65,7 @@ def commands(case: Case, files: Sequence[str], folder: Path) -> tuple[str, str]:
         shell = f"cat > {_quoted(name)} <<'END'\n{text}END\n"
         shell += f"vcor run {_quoted(name)} --print cor_sphere"
         lines = [f'case = vcor.Case(r"""\n{text}""")']
-    python = "\n".join(["import vcor", "", *lines, 'print(case.run()["cor_sphere"].item())'])
+    python = "\n".join(["import vcor", "", *lines, 'print(case.solve()["cor_sphere"])'])
     return shell, python
 
 
