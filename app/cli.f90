@@ -44,7 +44,7 @@ module vcor_app_cli
 
    !> What takes the place of shards
    character(len=*), parameter :: instead = 'expected mpirun -n N vcor run CASE.nml, or a pool ' &
-      //'of the Python package (docs/distributed.md)'
+      //'of the Python package (docs/python.md)'
 
 contains
 

@@ -138,7 +138,7 @@ module vcor_app_commands
    !> Commands of the Python package, which are separate programs, and their summaries
    type(entry_t), parameter :: package_commands(*) = [ &
       entry_t("plot", "draw figures of results"), &
-      entry_t("page", "write a page for the browser, with sliders"), &
+      entry_t("page", "open a page of an impact in the browser, or write one as a file"), &
       entry_t("fit", "identify a material from measured moduli"), &
       entry_t("identify", "find materials from measured impacts, and what the data leave open"), &
       entry_t("uncertainty", "find how uncertain results are, and which values cause it"), &

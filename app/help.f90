@@ -6,8 +6,8 @@ module vcor_app_help
    use vcor_app_external, only : external_commands
    use vcor_case_catalogue, only : described_keys, groups, key_t, kind_name, range_text
    use vcor_case_choices, only : choices, topics
+   use vcor_case_described, only : described_groups
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
-   use vcor_number, only : interval_text
    use vcor_json, only : array, member, object, strings, words
    use vcor_solver_features, only : features, methods, of_paper_scheme, reads, refusals, &
       solves, unread
@@ -404,16 +404,7 @@ contains
             //member("summary", package_commands(i)%text))
       end do
       text = text//array(list, "package_commands")
-      list = ""
-      do i = 1, size(groups)
-         associate (group => groups(i))
-            list = list//object(member("name", group%name)//member("meaning", group%meaning) &
-               //member("required", group%required)//member("repeated", group%repeated) &
-               //member("label", group%label)//member("selector", group%selector) &
-               //array(keys_of(group%name), "keys"))
-         end associate
-      end do
-      text = text//array(list, "groups")//array(columns(quantities()), "summary") &
+      text = text//array(described_groups(), "groups")//array(columns(quantities()), "summary") &
          //array(columns(history_quantities), "history")
       list = ""
       do i = 1, size(statuses)
@@ -524,65 +515,6 @@ contains
             //words("options", options_of(command))//array(entries, "page"))
       end associate
    end function command_object
-
-   !> The keys of a group
-   function keys_of(group) result(list)
-      character(len=*), intent(in) :: group
-      character(len=:), allocatable :: list
-
-      type(key_t), allocatable :: rows(:)
-      character(len=:), allocatable :: text
-      integer :: i
-
-      allocate (rows, source=described_keys())
-      list = ""
-      do i = 1, size(rows)
-         associate (key => rows(i))
-            if (key%group /= group) cycle
-            text = member("name", key%name)//member("type", type_name(key%value_kind)) &
-               //member("value", kind_name(key%value_kind))//member("meaning", key%meaning) &
-               //member("unit", key%unit)//member("range", interval_text(key%range)) &
-               //words("choices", key%choices)//array(meanings_of(key), "meanings") &
-               //words("models", key%models) &
-               //member("required", key%required)
-            if (key%default == "''") then
-               text = text//member("default", "")
-            else if (key%default /= "") then
-               text = text//member("default", key%default)
-            end if
-            if (key%instead /= "") text = text//member("instead", key%instead)
-            list = list//object(text)
-         end associate
-      end do
-   end function keys_of
-
-   !> The words that a key can have, as JSON objects
-   function meanings_of(key) result(list)
-      type(key_t), intent(in) :: key
-      character(len=:), allocatable :: list
-
-      integer :: i
-
-      list = ""
-      do i = 1, size(choices)
-         if (choices(i)%key == trim(key%group)//"."//key%name .and. contains_word(key%choices, &
-            choices(i)%word)) list = list//object(member("word", choices(i)%word) &
-            //member("meaning", choices(i)%meaning))
-      end do
-   end function meanings_of
-
-   !> Name of the type of a key
-   pure function type_name(value_kind) result(name)
-      !> One of the `*_key` constants
-      integer, intent(in) :: value_kind
-      !> real, integer, logical, text, or list: one or more reals
-      character(len=:), allocatable :: name
-
-      character(len=*), parameter :: names(*) = [character(len=7) :: "real", "integer", "logical", &
-         "text", "list"]
-
-      name = trim(names(value_kind))
-   end function type_name
 
    !> Columns of a file
    function columns(quantities) result(list)

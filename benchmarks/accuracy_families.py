@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How accurate vcor is on impacts of many kinds: measures, and writes the tables of docs/appendix_accuracy.md.
+"""How accurate vcor is on impacts of many kinds: measures, and writes the tables of docs/measured.md.
 
     accuracy_families.py [--only NAME,...] [--share 0.1] [--cases FILE]
 
 Each family of impacts is drawn from a seed of its own and solved with the methods and accuracies of its runs.
 The error is the distance from the best solution, see `best_of`. The tables go between the markers of
-docs/appendix_accuracy.md, with --only to the screen; --share solves a share of each family. --cases writes the
+docs/measured.md, with --only to the screen; --share solves a share of each family. --cases writes the
 impacts that are refused, missed, or whose error is stated too small, as case files with remarks. Takes about
 a quarter of an hour on two idle cores. Needs the Python package (PYTHONPATH=python/src and
 VCOR_LIBRARY=build/release/libvcor_python.so will do), and what tests/reference/requirements.txt names.
@@ -28,7 +28,7 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 TOP = Path(__file__).resolve().parent.parent
 REFERENCE = TOP / "tests" / "reference"
-DOCUMENT = TOP / "docs" / "appendix_accuracy.md"
+DOCUMENT = TOP / "docs" / "measured.md"
 sys.path.insert(0, str(REFERENCE))
 
 import numpy as np  # noqa: E402

@@ -1,19 +1,23 @@
 """How often the 68 and 95 % profile intervals of `vcor.identify` hold the truth.
 
-    python benchmarks/coverage.py [MODEL ...] [--draws N] [--first SEED] [--noise 0.01]
+    python benchmarks/coverage.py [MODEL ...] [--draws N] [--first SEED] [--noise 0.01] [--write]
 
 Data are those of python/tests/data, by another solver, with seeded normal noise; each seed is one
 draw. Of 300 draws 205 +- 8 and 285 +- 4 are expected to hold each parameter; more is right where an
-interval ends at the limit of a parameter's range. Needs the package with scipy, and python/tests.
+interval ends at the limit of a parameter's range. --write puts the rows into docs/measured.md. Needs the package with scipy,
+and python/tests.
 """
 
 import argparse
+import re
 import sys
 from pathlib import Path
 
 import numpy as np
 
-TESTS = Path(__file__).parents[1] / "python" / "tests"
+TOP = Path(__file__).parents[1]
+TESTS = TOP / "python" / "tests"
+DOCUMENT = TOP / "docs" / "measured.md"
 sys.path.insert(0, str(TESTS))
 
 import test_identify as cases  # noqa: E402
@@ -52,6 +56,27 @@ def coverage(model, seeds, noise):
     return dict(zip(truth, counts.T.tolist(), strict=True)), refused
 
 
+def row(model, counts, draws, refused):
+    """The row of a model in Markdown: shares of the draws that are not refused."""
+    judged = draws - refused
+    names = ", ".join(f"`{name.partition('.')[2]}`" for name in counts)
+    shares = [", ".join(f"{100 * both[i] / judged:.0f}" for both in counts.values()) for i in (0, 1)]
+    of = f"{judged} of {draws}" if refused else f"{draws}"
+    return f"| `{model}`: {names} | {of} | {shares[0]} | {shares[1]} |"
+
+
+def write(rows):
+    """Put the rows into the page, in place of those of the same models."""
+    text = DOCUMENT.read_text("utf-8")
+    for model, line in rows.items():
+        start, rest = text.split("<!-- coverage -->")
+        rest, count = re.subn(rf"^\| `{model}`: .*$", lambda _, line=line: line, rest, flags=re.M)
+        if count != 1:
+            sys.exit(f"coverage: {DOCUMENT.name} has {count} rows of {model}, expected one")
+        text = f"{start}<!-- coverage -->{rest}"
+    DOCUMENT.write_text(text, "utf-8")
+
+
 def main():
     """Print a row per model."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -59,12 +84,16 @@ def main():
     parser.add_argument("--draws", type=int, default=300)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--noise", type=float, default=0.01)
+    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.draws)
+    rows = {}
     for model in options.models:
         counts, refused = coverage(model, seeds, options.noise)
-        rows = ", ".join(f"{name} {narrow} and {wide}" for name, (narrow, wide) in counts.items())
-        print(f"{model}: {rows} of {options.draws}, {refused} refused", flush=True)
+        rows[model] = row(model, counts, options.draws, refused)
+        print(rows[model], flush=True)
+    if options.write:
+        write(rows)
 
 
 if __name__ == "__main__":

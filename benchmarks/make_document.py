@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the tables of docs/performance.md, between its markers, and docs/performance.svg.
+"""Write the tables of docs/measured.md, between its markers, and docs/performance.svg.
 
     make_document.py FOLDER      with accuracy.csv, modes.csv and comparison.csv, or sweeps.csv, or
                                  all of them
@@ -16,7 +16,7 @@ import subprocess
 import sys
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
-DOCUMENT = TOP / "docs" / "performance.md"
+DOCUMENT = TOP / "docs" / "measured.md"
 FIGURE = TOP / "docs" / "performance.svg"
 
 STYLE = TOP / "python/src/vcor/vcor.mplstyle"

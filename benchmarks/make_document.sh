@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renews the tables and the figure of docs/performance.md: builds, measures (about six minutes on a
+# Renews the tables and the figure of docs/measured.md: builds, measures (about six minutes on a
 # quiet machine) and writes. The lines behind the tables are in build/release/benchmarks/*.csv.
 #
 #   benchmarks/make_document.sh [--write-only]      with the measurements that are there

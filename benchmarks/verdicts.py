@@ -9,7 +9,7 @@ shapes are cones, punches, bodies of revolution and true spheres of the same mas
 them with their weight.
 Impacts whose cor_sphere, as computed or exact, is below 0.02 are drawn again. Only `cor_deviation` is judged here,
 without the measures of other things (contact_ratio, extent). --worst prints the impacts of each class that
-are farthest from their prediction. --write puts the table into docs/validity.md, and how many verdicts of all classes
+are farthest from their prediction. --write puts the table into docs/measured.md, and how many verdicts of all classes
 together are right into the sentences of the help, the legend of figures, the FAQ and that page; with a file it takes
 the table that was printed into it. Takes about ten minutes. Needs the Python package (PYTHONPATH=python/src and
 VCOR_LIBRARY=build/release/libvcor_python.so will do).
@@ -281,8 +281,8 @@ def shares(table: str) -> dict[str, int]:
 
 
 def table_of_page() -> str:
-    """The table in docs/validity.md."""
-    page = (TOP / "docs/validity.md").read_text(encoding="utf-8")
+    """The table in docs/measured.md."""
+    page = (TOP / "docs/measured.md").read_text(encoding="utf-8")
     start = page.index(HEAD)
     return page[start : page.index("\n\n", start)]
 
@@ -305,7 +305,7 @@ def places(table: str) -> Iterator[tuple[Path, str, str]]:
 
 def write(table: str) -> None:
     """Put a table and its sentences into the pages."""
-    path = TOP / "docs/validity.md"
+    path = TOP / "docs/measured.md"
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace(table_of_page(), table.strip()), encoding="utf-8")
     for file, _, right in places(table):

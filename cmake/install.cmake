@@ -121,6 +121,8 @@ if(TARGET vcor_python)
     EXCLUDE_FROM_ALL)
   install(DIRECTORY python/src/vcor DESTINATION "${python_folder}" COMPONENT python EXCLUDE_FROM_ALL
     PATTERN "__pycache__" EXCLUDE)
+  install(DIRECTORY examples/materials DESTINATION "${python_folder}/vcor/lib" COMPONENT python
+    EXCLUDE_FROM_ALL FILES_MATCHING PATTERN "*.nml")
   file(WRITE "${PROJECT_BINARY_DIR}/python/vcor-${PROJECT_VERSION}.dist-info/METADATA"
     "Metadata-Version: 2.1\nName: vcor\nVersion: ${PROJECT_VERSION}\n")
   install(DIRECTORY "${PROJECT_BINARY_DIR}/python/" DESTINATION "${python_folder}" COMPONENT python

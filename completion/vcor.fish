@@ -9,7 +9,7 @@ function __vcor_described_programs
          case plot
             echo 'plot	draw figures of results'
          case page
-            echo 'page	write a page for the browser, with sliders'
+            echo 'page	open a page of an impact in the browser, or write one as a file'
          case fit
             echo 'fit	identify a material from measured moduli'
          case identify

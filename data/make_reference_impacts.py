@@ -175,7 +175,7 @@ def main():
     warnings.simplefilter("ignore", vcor.ValidityWarning)
     made = {
         "about": "Impacts of a body on a plate, half space, layer or sphere, linear and without friction, SI units. "
-        "docs/reference_impacts.md explains every field.",
+        "docs/reproducing_the_paper.md explains every field.",
         "version": vcor.__version__,
         "impacts": [*paper(), *thin(), *layers(), *waves()],
     }

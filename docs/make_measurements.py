@@ -16,6 +16,7 @@ import pandas as pd
 from matplotlib import style
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.optimize import brentq
 from vcor.plot import HATCH, PAGE, STYLE
 
 import vcor
@@ -108,12 +109,14 @@ def curve(axis, x, y, color, line="-", **options):
     axis.plot(x, y, color=color, linestyle=line, marker=options.pop("marker", ""), **options)
 
 
-def hatch(axis, x, validity):
-    """Hatch where the program judges a curve not to be good, narrowly where it is outside."""
+def hatch(axis, x, validity, whose=None):
+    """Hatch where the program judges a curve not to be good, narrowly where it is outside; the legend says whose."""
     edges = np.concatenate([x[:1], np.sqrt(x[1:] * x[:-1]), x[-1:]])
     for word, lines in (("caution", "//"), ("outside", "////")):
         for i in np.flatnonzero(np.asarray(validity) == word):
             axis.axvspan(edges[i], edges[i + 1], fill=False, hatch=lines, ec=HATCH, lw=0, zorder=0)
+        if whose and word in validity:
+            axis.fill([], [], fill=False, hatch=lines, ec=HATCH, lw=0, label=f"{whose}: {word}")
 
 
 def legend(axis, columns=2):
@@ -229,7 +232,7 @@ def alumina():
         if waves == "body":
             reaches = np.interp(point.cor_sphere, e.cor_sphere[:4], thick[:4])
         else:
-            hatch(right, thick, e.validity.values)
+            hatch(right, thick, e.validity.values, name)
     right.axhspan(
         point.cor_sphere - point.cor_sphere_sigma,
         point.cor_sphere + point.cor_sphere_sigma,
@@ -292,14 +295,15 @@ def ice():
         if lines:
             curve(right, e[known], -s[known], "0.5", lines.pop(0), label=name)
     rows = []
-    for color, law in zip(("C2", "C3", "C5"), data("ice_laws").itertuples(), strict=True):
+    styles = zip(("C2", "C3", "C5"), ("-", "--", "-."), data("ice_laws").itertuples(), strict=True)
+    for color, line, law in styles:
         critical = 0.01 * law.critical_velocity
         at = np.geomspace(max(law.lowest_velocity, critical), law.highest_velocity, 9)
         e = (at / critical) ** -law.exponent
         fit = vcor.identify(one, {"velocity": at, "cor": e}, ["ice.viscosity"])
         measured(left, at, e, color=color, label=f"{law.temperature} K, law")
         known = fit.band
-        curve(left, known["velocity"], known["cor"], color)
+        curve(left, known["velocity"], known["cor"], color, line, label=f"{law.temperature} K, fit")
         left.fill_between(
             known["velocity"], known["low"], known["high"], color=color, alpha=0.2, lw=0
         )
@@ -323,10 +327,10 @@ def ice():
         label="spheres of 15 mm",
     )
     across = np.geomspace(1e-4, 0.3, 40)
-    hatch(left, across, one.sweep({"impact.velocity": across}, ["validity"]).validity.values)
+    judged = one.sweep({"impact.velocity": across}, ["validity"]).validity.values
+    hatch(left, across, judged, "fit, pressure")
     left.set(xscale="log", xlim=(1e-4, 0.3), ylim=(0, 1.05), xlabel="velocity [m/s]",
              ylabel="coefficient of restitution")  # fmt: skip
-    left.plot([], [], color="0.5", marker="", label="Kelvin-Voigt, fitted")
     legend(left)
     right.set(
         xlabel="coefficient of restitution", ylabel="−d ln e/d ln v", xlim=(0, 1), ylim=(0, 0.34)
@@ -388,10 +392,11 @@ def acetate():
     low, high = loss_band(one, seen.velocity)
     found = one.sweep({"impact.velocity": v}, ["cor_sphere"]).cor_sphere.values
     loss = PchipInterpolator(np.log(v), 1 - found)(np.log(fine))
-    curve(right, fine, 1 - loss, "C3", "--", label="elastic half space")
+    curve(right, fine, 1 - loss, "C3", "--", label="glass on a wall, half space")
     right.fill_between(fine, 1 - high * loss, 1 - low * loss, color="C3", alpha=0.2, lw=0)
     one["plate.waves"] = "none"
-    hatch(right, fine, one.sweep({"impact.velocity": fine}, ["validity"]).validity.values)
+    judged = one.sweep({"impact.velocity": fine}, ["validity"]).validity.values
+    hatch(right, fine, judged, "half space")
     measured(
         right,
         seen.velocity,
@@ -408,7 +413,8 @@ def acetate():
     granite, big = case("granite_spheres"), data("granite_spheres").iloc[0]
     at = granite.solve({"impact.velocity": big.velocity}, ["cor", "mean_pressure", "validity"])
     right.fill_between([0.3, 1.5], big.cor - big.cor_sigma, big.cor + big.cor_sigma,
-                       color="0.85", lw=0, label="two granite spheres", zorder=0.5)  # fmt: skip
+                       color="0.85", lw=0, label="granite pair, measured", zorder=0.5)  # fmt: skip
+    curve(right, fine, np.full(fine.shape, at["cor"]), "0.4", ":", label="granite pair, elastic")
     rows.append(["two granite spheres", "nothing", f"{at['cor']:.4f}", "no loss in the model",
                  f"{big.cor:.2f} ± {big.cor_sigma:.2f}",
                  of_yield(at)])  # fmt: skip
@@ -664,10 +670,29 @@ def resilience():
 # ---------------------------------------------------------------- three grades of one rubber
 
 
+def lighter(one, radius, wanted):
+    """What might explain a rebound below that of a fixed pad: cells of the table."""
+    quantities = ["resilience", "layer_strain"]
+    fixed = one.solve({"sphere.radius": radius}, quantities)
+    stiff = one.copy()
+    for name in ("relaxing_modulus", "equilibrium_modulus"):
+        stiff[f"sorbothane.{name}"] = 1.5 * stiff[f"sorbothane.{name}"]
+    anvil = vcor.Case(one.text() + "&target body = 'block', mass = 1 /")
+
+    def on(mass):
+        """Resilience on a free anvil of a mass [kg]."""
+        return anvil.solve({"sphere.radius": radius, "target.mass": mass}, ["resilience"])["resilience"]
+
+    meets = brentq(lambda mass: on(mass) - wanted, 0.1, 10.0, rtol=1e-4)
+    return [f"{fixed['layer_strain']:.2f}", f"{100 * fixed['resilience']:.1f} %",
+            f"{100 * stiff.solve({'sphere.radius': radius}, quantities)['resilience']:.1f} %",
+            *(f"{100 * on(mass):.1f} %" for mass in (10.0, 1.0)), f"{meets:.2f} kg"]  # fmt: skip
+
+
 def sorbothane():
     """Vertical rebound of three grades from their moduli, with everything that the sheet does not say varied."""
     made, (left, right) = panels("upper left", "lower right")
-    moduli, rows = data("sorbothane_moduli"), []
+    moduli, rows, causes = data("sorbothane_moduli"), [], []
     for color, grade in zip(("C0", "C1", "C2"), data("sorbothane").itertuples(), strict=True):
         known = moduli[moduli.durometer_shore_00 == grade.durometer_shore_00]
         found = {"none": [], "body": []}
@@ -685,6 +710,8 @@ def sorbothane():
                     one["plate.waves"], one["plate.base"] = waves, base
                     values += [one.solve({"sphere.radius": radius}, ["resilience", "peak_loss_tangent"])
                                for radius in PLUNGERS]  # fmt: skip
+        one["plate.waves"], one["plate.base"] = "none", "bonded"
+        causes.append([f"{grade.durometer_shore_00} Shore 00", *lighter(one, PLUNGERS[0], grade.resilience)])
         tangent = found["none"][-1]["peak_loss_tangent"]
         low, high = ({waves: 100 * end(one["resilience"] for one in values)
                       for waves, values in found.items()} for end in (min, max))  # fmt: skip
@@ -707,7 +734,9 @@ def sorbothane():
     legend(left)
     legend(right)
     return made, table(["grade", "tan δ at π/t₀", "predicted without waves", "with waves", "textbook",
-                        "measured"], *rows)  # fmt: skip
+                        "measured"], *rows) + "\n\n" + table(
+        ["grade", "`layer_strain`", "fixed, without waves", "moduli times 1.5", "anvil of 10 kg", "anvil of 1 kg",
+         "anvil that gives the measured value"], *causes)  # fmt: skip
 
 
 #: Sections of the page, and the cases with the numbers that were put in

@@ -1,4 +1,4 @@
-"""Write the tables of docs/impact.md and docs/waves.svg: what each choice of waves is worth.
+"""Write the tables of docs/impact.md and docs/waves.svg: what each choice of waves and the floor below a layer change.
 
 pip install './python[plot]' && python docs/make_waves.py [FOLDER]
 """
@@ -48,6 +48,20 @@ LOOKS = [
 ]
 #: Points of a curve
 POINTS = 16
+#: Test pieces of rubber on a floor: the case, and thicknesses [mm]
+PAD, PADS = "examples/rubber_pad_on_steel.nml", (3, 6, 12.5, 25, 50)
+#: Light balls on a layer of 5 mm: material, density [kg/m3], diameter [mm], velocity [m/s]
+BALLS = [("steel", 7800, 6, 1), ("steel", 7800, 2, 1), ("glass", 2500, 3, 1), ("steel", 7800, 2, 3), ("steel", 7800, 1, 3)]
+#: The layer: shear modulus [Pa], density [kg/m3], thickness [m]
+SHEAR, DENSITY, LAYER = 1.2e6, 1100.0, 0.005
+LIGHT = """
+&impact velocity = {velocity} /
+&sphere diameter = {diameter}, material = 'ball' /
+&plate thickness = {thickness}, base = '{base}', material = 'rubber' /
+&contact mechanics = 'exact' /
+&material name = 'ball', model = 'rigid', density = {ball} /
+&material name = 'rubber', model = 'elastic', modulus = {modulus}, poisson_ratio = 0.5, density = {layer} /
+"""
 
 
 def case(plate, choice):
@@ -102,17 +116,55 @@ def table(plate):
     found = {name: solve(plate, name, thick, speeds) for name in choices(plate)}
     exact, wave_number = found.pop("body")
     heads = [CHOICES[name][0] for name in ("body", *found)]
-    lines = [["thickness", "`plate_wave_number`", *heads], ["---"] * (2 + len(heads))]
+    lines = [["thickness", "`plate_wave_number`", *heads]]
     for i, h in enumerate(thick):
         line = [f"{h} mm", ", ".join(f"{k:.2f}" for k in wave_number[i])]
         line.append(", ".join(f"{e:.4f}" for e in exact[i]))
         line += [errors(e[i], exact[i]) for e, _ in found.values()]
         lines.append(line)
+    return markdown(lines)
+
+
+def markdown(lines):
+    """Lines of cells as a table; the first is the head."""
+    lines = [lines[0], ["---"] * len(lines[0]), *lines[1:]]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def pads():
+    """What a test piece of a rebound test does on its floor, against its thickness, and as a half space."""
+    lines = [["thickness", "contact time", "largest force", "resilience", "$a/H$", "stiffening"]]
+    names = ["contact_time", "max_force", "resilience", "layer_ratio", "layer_stiffening"]
+    one = vcor.read(ROOT / PAD)
+    for thick in PADS:
+        found = one.solve({"plate.thickness": 1e-3 * thick}, names)
+        line = [f"{thick:g} mm", f"{1e3 * found['contact_time']:.2f} ms", f"{found['max_force']:.0f} N"]
+        line += [f"{100 * found['resilience']:.1f} %", f"{found['layer_ratio']:.2f}", f"{found['layer_stiffening']:.2f}"]
+        lines.append(line)
+    text = re.sub(r"\n *(thickness|base) *=.*", "", one.text())
+    found = vcor.Case(text.replace("&plate", "&plate\n waves = 'none'")).solve({}, names[:3])
+    line = [f"{1e3 * found['contact_time']:.2f} ms", f"{found['max_force']:.0f} N", f"{100 * found['resilience']:.1f} %"]
+    return markdown([*lines, ["half space", *line, "", ""]])
+
+
+def light():
+    """The share of the energy of a light ball that waves in an elastic layer take."""
+    lines = [["ball", "$c_st_0/2H$", "bonded", "sliding"]]
+    for name, ball, diameter, velocity in BALLS:
+        shares = []
+        for base in ("bonded", "sliding"):
+            text = LIGHT.format(velocity=velocity, diameter=1e-3 * diameter, thickness=LAYER, base=base, ball=ball,
+                                modulus=3 * SHEAR, layer=DENSITY)  # fmt: skip
+            found = vcor.Case(text).solve({}, ["cor_sphere", "contact_time"])
+            shares.append(f"{100 * (1 - found['cor_sphere'] ** 2):.2g} %")
+            if base == "bonded":
+                crossings = (SHEAR / DENSITY) ** 0.5 * found["contact_time"] / (2 * LAYER)
+        lines.append([f"{name} of {diameter} mm at {velocity} m/s", f"{crossings:.1f}", *shares])
+    return markdown(lines)
+
+
 def curves(axes, plate, letters):
-    """Difference from the exact restitution against thickness, and restitution against speed."""
+    """Relative difference from the exact restitution against thickness, and restitution against speed."""
     upper, lower = axes
     _, thick, speeds, middle = PLATES[plate]
     over_thick = np.geomspace(thick[0], thick[-1], POINTS)
@@ -125,9 +177,9 @@ def curves(axes, plate, letters):
         lower.plot(over_speed, solve(plate, name, [middle], over_speed)[0][0], **look)
         if name != "body":
             e = solve(plate, name, over_thick, speeds[1:2])[0]
-            upper.plot(over_thick, abs(e - exact)[:, 0], **look)
+            upper.plot(over_thick, abs(e / exact - 1)[:, 0], **look)
     upper.set(title=f"({letters[0]}) {plate}, {speeds[1]} m/s", xlabel="thickness [mm]", xscale="log",
-              yscale="log", ylim=(1e-4, 1))  # fmt: skip
+              yscale="log", ylim=(1e-4, 100))  # fmt: skip
     lower.set(title=f"({letters[1]}) {plate}, {middle} mm", xlabel="velocity [m/s]", xscale="log")
     for axis, ticks in ((upper, thick), (lower, speeds)):
         axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
@@ -140,7 +192,10 @@ def figure():
     axes = made.subplots(2, 3)
     for column, plate, letters in zip(axes.T, PLATES, ("ad", "be", "cf"), strict=True):
         curves(column, plate, letters)
-    axes[0, 0].set_ylabel("difference from body")
+    note = "elastic: the paper's\nis the thin plate"
+    axes[0, 1].text(0.97, 0.94, note, transform=axes[0, 1].transAxes, ha="right", va="top")
+    axes[1, 1].text(0.97, 0.8, note, transform=axes[1, 1].transAxes, ha="right", va="top")
+    axes[0, 0].set_ylabel("relative difference from body")
     axes[1, 0].set_ylabel("restitution of the sphere")
     made.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     return made
@@ -149,9 +204,10 @@ def figure():
 def main(folder):
     """Write the page and its figure to a folder."""
     text = (ROOT / "docs" / "impact.md").read_text("utf-8")
-    for plate in PLATES:
-        pattern = rf"(<!-- {plate} -->\n).*?(\n<!-- end -->)"
-        text = re.sub(pattern, rf"\g<1>{table(plate)}\g<2>", text, flags=re.DOTALL)
+    made = {plate: table(plate) for plate in PLATES} | {"pad": pads(), "light": light()}
+    for name, lines in made.items():
+        pattern = rf"(<!-- {name} -->\n).*?(\n<!-- end -->)"
+        text = re.sub(pattern, lambda found, lines=lines: f"{found[1]}{lines}{found[2]}", text, flags=re.DOTALL)
     (folder / "impact.md").write_text(text, "utf-8")
     with style.context(STYLE):
         figure().savefig(folder / "waves.svg", metadata={"Date": None})

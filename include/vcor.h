@@ -119,6 +119,10 @@ int vcor_remove_sweeps(vcor_case *self, vcor_error *error);
  * drop_height, the one that was set last counts and the other one is no longer given. */
 int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);
 
+/* Remove the value at an address, so that its default holds; or, by its name, all values of a group that occurs
+ * once, such as "target", or a material */
+int vcor_unset(vcor_case *self, const char *address, vcor_error *error);
+
 /* Value at an address as a namelist has it, given or by default, a list of one number with a comma after it;
  * `*value` is NULL if there is none */
 int vcor_get(const vcor_case *self, const char *address, char **value, vcor_error *error);
@@ -126,6 +130,10 @@ int vcor_get(const vcor_case *self, const char *address, char **value, vcor_erro
 /* Path, unit and meaning of an address */
 int vcor_describe(const vcor_case *self, const char *address, vcor_column *column,
                   vcor_error *error);
+
+/* Groups and keys of cases: a JSON array in UTF-8, the member "groups" of what `vcor help --json` prints, with
+ * meaning, unit, range, choices and default of each key */
+int vcor_catalogue(char **text, vcor_error *error);
 
 /* The case as namelists; with `complete` also every default. The case is checked first. */
 int vcor_case_text(const vcor_case *self, int complete, char **text,

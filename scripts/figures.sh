@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the figures of docs/gallery.md: runs the commands that stand there and copies what they draw.
+# Makes the figures of docs/figures.md: runs the commands of its gallery and copies what they draw.
 #
 #   scripts/figures.sh [DIRECTORY]       default: docs/gallery
 #
@@ -38,15 +38,15 @@ if ! command -v vcor-plot >"$scratch/found"; then
    printf '#!/bin/sh\nexec "$PYTHON" -c "from vcor._command import fit; fit()" "$@"\n' >"$scratch/bin/vcor-fit"
    chmod +x "$scratch/bin/vcor-plot" "$scratch/bin/vcor-fit"
 fi
-awk '/^```sh$/ { on = 1; next } /^```$/ { on = 0 } on' "$top/docs/gallery.md" >"$scratch/commands.sh"
+awk '/^## / { there = /Gallery/ } /^```sh$/ { on = there; next } /^```$/ { on = 0 } on' "$top/docs/figures.md" >"$scratch/commands.sh"
 
 cd "$scratch"
 PATH="$scratch/bin:$PATH" bash -euo pipefail commands.sh >"$scratch/screen" \
-   || fail "a command of docs/gallery.md failed"
+   || fail "a command of docs/figures.md failed"
 [ ! -e plots ] || "$PYTHON" -c '
 from vcor._command import call
 for one in open("plots").read().split("\0\0")[:-1]: call("plot", one.split("\0"))
-' >"$scratch/screen" || fail "a figure of docs/gallery.md failed"
+' >"$scratch/screen" || fail "a figure of docs/figures.md failed"
 figures=("$scratch"/*.svg)
 cp "${figures[@]}" "$target"
 printf 'figures: %d figures in %s\n' "${#figures[@]}" "$target"

@@ -42,6 +42,6 @@ ln -s "$top"/examples/{paper,sweeps,materials,identification} "$top"/examples/*.
 
 export VCOR_LIBRARY=$top/build/release/libvcor_python.so PYTHONPATH=$top/python/src
 "$venv/bin/python" -m sphinx -W --keep-going -q -b html "$site/docs" "$site/html"
-"$venv/bin/ford" -q -o "$site/html/fortran" docs/api.md
+"$venv/bin/ford" -q -o "$site/html/fortran" docs/site/fortran.md
 python3 docs/site/offline.py "$site/html"
 printf 'site: %s\n' "$site/html/index.html"

@@ -11,9 +11,12 @@ module vcor
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_body, only : new_beam, new_block, new_panel, new_rod, support_cantilever, &
+      support_clamped, support_free, support_supported
    use vcor_impact_face, only : base_bonded, base_free, base_half_space, base_sliding, face_t, &
       new_face
-   use vcor_impact_target, only : new_plate, target_t, waves_constant, &
+   use vcor_impact_structure, only : new_structure, structure_t
+   use vcor_impact_target, only : new_plate, new_target, target_t, waves_constant, &
       waves_frozen, waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
@@ -49,6 +52,8 @@ module vcor
    public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    public :: target_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: waves_hereditary
+   public :: new_target, structure_t, new_structure, new_block, new_beam, new_rod, new_panel
+   public :: support_supported, support_clamped, support_cantilever, support_free
    public :: face_t, new_face, base_half_space, base_free, base_bonded, base_sliding
    public :: impact_t, new_impact, contact_law_t, new_contact_law
    ! its solution

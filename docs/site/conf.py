@@ -17,7 +17,7 @@ author = "the vcor developers"
 release = version = re.search(r'^version = "(.*)"$', (ROOT / "fpm.toml").read_text(), re.M)[1]
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx-mathjax-offline"]
 root_doc = "index"
-exclude_patterns = ["README.md", "api.md", "site"]
+exclude_patterns = ["README.md", "site"]
 html_theme = "furo"
 html_title = f"vcor {release}"
 html_static_path = ["site/static"]
@@ -43,23 +43,19 @@ suppress_warnings = ["misc.highlighting_failure"]
 
 # The order in which a reader needs the pages
 PARTS = {
-    "Begin": ["installation", "getting_started", "which_model", "recipes", "tutorial"],
-    "Inputs": ["materials", "data", "fitting", "dma_to_restitution"],
-    "Is it valid": ["validity", "impact", "layers", "structures", "accuracy", "faq"],
-    "Sweeps and figures": ["sweeps", "figures", "page", "gallery", "python", "distributed"],
-    "From and to measurements and codes": ["rebound", "identification", "measurements", "exchange", "cards"],
-    "Reference": ["commands", "input", "output", "library", "python_api", "reference_impacts",
-                  "glossary"],
-    "Theory": ["theory", "reproducing_the_paper", "numerics", "appendix_accuracy",
-               "appendix_statistics"],
-    "Development": ["architecture", "performance", "scaling", "changes"],
+    "Begin": ["getting_started", "which_model", "recipes", "tutorial"],
+    "Impacts": ["impact", "structures", "validity", "accuracy", "faq"],
+    "Materials": ["materials", "data", "identification"],
+    "Use": ["sweeps", "figures", "page", "python", "python_api", "exchange"],
+    "Reference": ["commands", "input", "output"],
+    "Background": ["theory", "numerics", "measurements", "reproducing_the_paper", "measured", "changes"],
 }
 
 
 def toctree():
     """Every page of the site, by its part."""
     named = {page for pages in PARTS.values() for page in pages}
-    found = {path.stem for path in SOURCE.glob("*.md")} - {"README", "index", "api"}
+    found = {path.stem for path in SOURCE.glob("*.md")} - {"README", "index"}
     extra = sorted(found - named)
     parts = PARTS if not extra else {**PARTS, "More": extra}
     text = ""
@@ -90,7 +86,7 @@ def start(text):
     """The README as the first page: no badge, its folder is one above that of the pages."""
     text = re.sub(r"^\[!\[.*?\]\([^)]*\)\]\([^)]*\) ", "", text, flags=re.M)
     text = re.sub(r"\[([^\]]+)\]\(docs/README.md\)", r"\1", text)
-    text = text.replace('src="docs/', 'src="').replace("](docs/", "](")
+    text = text.replace('src="docs/', 'src="').replace("](docs/", "](").replace("](CHANGELOG.md)", "](changes.md)")
     return re.sub(r"\]\((?=examples/|CONTRIBUTING|CITATION|LICENSE)", "](../", text)
 
 

@@ -71,8 +71,10 @@ def arguments(case):
         },
         "vcor_remove_sweeps": {"case": case},
         "vcor_set": {"case": case, "address": b"impact.velocity", "value": b"2.0"},
+        "vcor_unset": {"case": case, "address": b"impact.gravity"},
         "vcor_get": {"case": case, "address": b"impact.velocity", "value": byref(text)},
         "vcor_describe": {"case": case, "address": b"impact.velocity", "column": byref(column)},
+        "vcor_catalogue": {"text": byref(text)},
         "vcor_case_text": {"case": case, "complete?": 0, "text": byref(text)},
         "vcor_save": {"case": case, "path": b"saved.nml", "complete?": 0},
         "vcor_axis": {

@@ -11,6 +11,7 @@ from conftest import SWEEPS
 
 import vcor
 from vcor import results
+from vcor.plot import figure
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +35,17 @@ def copy(sweep, tmp_path):
 
 def test_a_foreign_file_is_read(sweep):
     assert vcor.open(sweep).cor.dims == ("impact.velocity",)
+
+
+def test_a_file_of_version_2_0_0(copy):
+    """It has no columns of structures: it is read and drawn as it is."""
+    with h5py.File(copy, "r+") as file:
+        for name in ("contacts", "last_separation", "structure_energy", "highest_mode"):
+            del file["summary"][name]
+        file.attrs["version"] = "2.0.0"
+    found = vcor.open(copy)
+    assert "cor" in found and "contacts" not in found
+    assert len(figure([copy]).axes) > 0
 
 
 def test_links_to_other_files(copy, tmp_path):

@@ -8,7 +8,7 @@ import sys
 import pytest
 from conftest import ROOT
 
-PAGE = ROOT / "docs" / "gallery.md"
+PAGE = ROOT / "docs" / "figures.md"
 FOLDER = ROOT / "docs" / "gallery"
 RESPONSES = ["indentation s/sₘₐₓ", "velocity −s′/v₀", "force F/Fₘₐₓ", "time [ms]"]
 COR = "coefficient of restitution"
@@ -26,9 +26,9 @@ HATCHED = "with caution: "
 FIGURES = {
     "fig1": [*MODULI, "storage modulus", "loss modulus", "t₀ = 1.342 ms", "ωₘᵢₙ = 4684 rad/s"],
     "fig2": [*RESPONSES, "COR 0.4313", "0.5593", "t₀ = 1.342 ms"],
-    "fig3": ["SLS, energy loss 793.2 mJ", "BUTYL-B252, energy loss 1.172 J"],
+    "fig3": ["SLS, energy loss 0.7932 J", "BUTYL-B252, energy loss 1.172 J"],
     "fig4": [
-        *[f"alpha = {beta // 4} 1/s, beta = {beta} 1/s" for beta in (600, 1200, 2400, 4800)],
+        *[f"alpha = {beta // 4} s⁻¹, beta = {beta} s⁻¹" for beta in (600, 1200, 2400, 4800)],
         COR,
         VELOCITY,
     ],

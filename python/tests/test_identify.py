@@ -708,7 +708,7 @@ def test_bad_input_is_refused_in_one_line(data, free, said):
 def test_the_table_of_rebound():
     rows = re.findall(
         r"^\| (0\.\d+) \| [\d.]+ \| ([\d.]+) \| ([\d.]+) \|",
-        (ROOT / "docs" / "rebound.md").read_text("utf-8"),
+        (ROOT / "docs" / "recipes.md").read_text("utf-8"),
         re.M,
     )
     assert len(rows) == 8
@@ -721,7 +721,7 @@ def test_the_table_of_rebound():
 
 
 def test_the_limits_of_small_losses_on_the_page_of_rebound():
-    page = (ROOT / "docs" / "rebound.md").read_text("utf-8")
+    page = (ROOT / "docs" / "recipes.md").read_text("utf-8")
     shown = re.search(r"1 - e tends to ([\d.]+) tan delta \(Boltzmann: ([\d.]+)\)", page)
     case = vcor.read(ROOT / "examples" / "identification" / "resilience.nml")
     case["solver.accuracy"], exponent = 1e-11, 1e-5

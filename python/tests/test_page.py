@@ -10,11 +10,10 @@ from conftest import ROOT
 
 PAGES = [
     "python.md",
-    "distributed.md",
     "exchange.md",
     "page.md",
     "recipes.md",
-    "reference_impacts.md",
+    "reproducing_the_paper.md",
 ]
 SCRIPTS = {
     f"{name}-{i}": script
@@ -31,13 +30,12 @@ FEWER = ("POINTS, PART = 10_000_000, 100_000", "POINTS, PART = 400, 100")
 
 # One interpreter for the scripts of a page, each in a folder and with names of its own: half of
 # their time goes into imports. Those of a cluster have processes that import the script
-ALONE = ["distributed.md"]
 GROUPS = {}
 for _name in SCRIPTS:
     # that of the recipe has a test of its own
     if _name != "recipes.md-0":
         _page = _name.rpartition("-")[0]
-        GROUPS.setdefault(_name if _page in ALONE else _page, []).append(_name)
+        GROUPS.setdefault(_name if "__main__" in SCRIPTS[_name] else _page, []).append(_name)
 RUNNER = """import os, runpy, sys
 for folder in sys.argv[1:]:
     os.chdir(folder)

@@ -170,7 +170,7 @@ def test_a_sweep(results):
     np.testing.assert_array_equal(curves(made.axes[0])[0].get_ydata(), data.cor)
     np.testing.assert_allclose(curves(made.axes[1])[0].get_ydata(), 1e3 * data.contact_time)
     assert made.axes[1].get_ylabel() == "contact time [ms]"
-    assert "beta = 900 1/s" in texts(made)
+    assert "beta = 900 s⁻¹" in texts(made)
     (line,) = curves(figure([vcor.read(SWEEPS / "sls_velocity.nml").run()], legends=["x"]).axes[0])
     np.testing.assert_array_equal(line.get_ydata(), data.cor)
     given = figure([results / "sweep.h5", results / "soft.h5"], legends=["one", "two"])
@@ -181,7 +181,7 @@ def test_a_map(results):
     made = figure([results / "cube.h5"])
     axis, bar = made.axes
     assert axis.get_ylabel() == "sphere radius [mm]"
-    assert axis.get_yscale() == "log" and axis.get_xscale() == "linear"
+    assert axis.get_yscale() == axis.get_xscale() == "log"
     assert bar.get_ylabel() == "coefficient of restitution"
     narrow = figure([results / "cube.h5"], ranges={"z": (0.4, 0.8), "x": (5.0, None)})
     assert narrow.axes[1].get_ylim() == (0.4, 0.8)
@@ -832,9 +832,19 @@ def test_moduli_at_several_temperatures_are_refused(results):
         vcor.plot.figure([results / "sls_material.h5", data])
 
 
+def test_a_legend_has_one_unit_of_energy(results):
+    """Also where the losses are on both sides of 1 J."""
+    files = [results / "sls_ghost.h5", results / "butyl_prony_ghost.h5"]
+    lost = [1e3 * vcor.open(file)["hysteresis_energy"].item() for file in files]
+    assert lost[0] < 1000 < lost[1]
+    words = texts(figure(files, kind="loop"))
+    assert [word.rpartition(" ")[2] for word in words] == ["J", "J"]
+
+
 def test_every_level_inside_the_frame_has_its_number():
     made = vcor.read(ROOT / "examples/sweeps/velocity_and_radius.nml").plot(
         quantities=["wave_energy"], log="z"
     )
     shown = [text.get_text() for text in made.axes[0].texts if text.get_visible()]
-    assert len(shown) >= 5 and len(set(shown)) == len(shown)
+    # of eight levels two cut a corner
+    assert len(shown) == 7 and len(set(shown)) == len(shown)

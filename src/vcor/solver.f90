@@ -242,8 +242,10 @@ contains
       call self%product%solve(impact, trajectory, error)
       if (.not. allocated(failure)) return
       if (allocated(error)) return
-      ! running out of steps says nothing about a contact without a given end
+      ! running out of steps says nothing about a contact without a given end; on a structure the
+      ! time has run out
       if (trajectory%status == contact_lasting .and. &
+          .not. impact%target%structure%exists() .and. &
           .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)
    end subroutine solve_by_what_works
 

@@ -450,3 +450,25 @@ def test_a_log_is_told_once(vcor):
 def test_no_progress(long):
     assert on_terminal(long, "--quiet").startswith("vcor: error: ")
     assert "\r" not in long.reference.err
+
+
+def test_structures(vcor):
+    """Impacts with several contacts go on where they were; another list of modes is another case."""
+    modes = vcor.folder / "modes.csv"
+    modes.write_text("frequency [Hz],damping_ratio,modal_mass [kg]\n900.0,0.01,0.02\n")
+    vcor.write(
+        "&impact velocity = 1.0 /\n&sphere radius = 0.005, material = 'steel' /\n"
+        "&plate material = 'steel' /\n&target body = 'modes', file = 'modes.csv' /\n"
+        "&material name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3,\n"
+        "   density = 7850 /\n"
+        "&sweep parameter = 'impact.velocity', start = 0.5, stop = 2.0, count = 200 /\n"
+    )
+    vcor("run", "case.nml", "--output", "ref")
+    interrupted(vcor)
+    text = modes.read_text()
+    modes.write_text(text.replace("900", "901"))
+    done = vcor("run", "case.nml", "--output", "out", "--resume")
+    assert done.code == FILE and PART in done.err
+    modes.write_text(text)
+    vcor.succeeds("run", "case.nml", "--output", "out", "--resume")
+    same_files(vcor.folder / "out", vcor.folder / "ref")

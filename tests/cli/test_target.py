@@ -319,6 +319,72 @@ def test_moves_for_ever(vcor, mass, stiffness):
     assert "the bodies do not separate within" in done.err
 
 
+# A supported beam whose third contact ends at the velocity GRAZING
+BEAM = "body = 'beam', support = 'supported', length = 0.3, width = 0.025, position = 0.11"
+ALUMINIUM = "&material name = 'aluminium', model = 'elastic', modulus = 70e9, poisson_ratio = 0.33, density = 2700 /"
+GRAZING = 0.34282655
+
+
+def test_contact_just_made(vcor):
+    """Where the last contact is just made or just missed, the weight changes cor_sphere in flight by a jump, and the stated error has it; elsewhere it has not."""
+    velocities = [GRAZING * (1 + 4e-7 * n) for n in range(-9, 10)] + [GRAZING * 0.999, GRAZING * 1.001]
+    sweep = f"&sweep parameter = 'impact.velocity', values = {', '.join(map(repr, velocities))} /\n{ALUMINIUM}\n"
+    text = case(BEAM, ", thickness = 0.008", "velocity = 1.0, gravity = 9.81", sweep, face="aluminium").replace("0.005", "0.01")
+    vcor.write(text)
+    done = vcor("run", "case.nml", "--print", "contacts,cor_sphere,cor_sphere_error")
+    assert done.code == SUCCESS, done.err
+    rows = [tuple(map(float, line.split())) for line in done.out.splitlines()]
+    jumps = [(one, other) for one, other in zip(rows[:-2], rows[1:-2], strict=False) if one[0] != other[0]]
+    assert jumps
+    for one, other in jumps:
+        jump = abs(other[1] - one[1])
+        assert jump > 1e-3
+        assert min(one[2], other[2]) > 0.99 * jump
+    assert max(row[2] for row in rows[-2:]) < 1e-5
+
+
+def test_contact_just_missed(vcor):
+    """A second contact that is just missed is in the stated error, too: the impact is not left to the method that follows the first one only."""
+    (vcor.folder / "modes.csv").write_text(HEAD + "3000.0,0.0,0.01\n", encoding="utf-8")
+    low, high = 0.86, 1.04
+    counts = {}
+
+    def contacts(velocity):
+        counts[velocity] = numbers(vcor, case(LIST, impact=f"velocity = {velocity!r}, gravity = 2e3"), ["contacts", "cor_sphere", "cor_sphere_error"])
+        return counts[velocity][0]
+
+    assert (contacts(low) > 1) != (contacts(high) > 1)
+    first = contacts(low)
+    while high - low > 2e-7 * low:
+        middle = 0.5 * (low + high)
+        if contacts(middle) == first:
+            low = middle
+        else:
+            high = middle
+    jump = abs(counts[high][1] - counts[low][1])
+    assert min(counts[high][2], counts[low][2]) >= 0.5 * jump
+
+
+def test_undamped_block_under_its_ball(vcor):
+    """What bounces on an undamped block for long ends with a number or one line."""
+    vcor.write(case("body = 'block', mass = 0.01, stiffness = 1e4", impact="velocity = 1e-3, gravity = 9.81"))
+    done = vcor("run", "case.nml", "--print", "cor_sphere,contacts")
+    assert done.code in (SUCCESS, NUMERICAL)
+    assert done.code == SUCCESS or done.err.count("\n") == 1
+
+
+def test_stays_within_the_reach(vcor):
+    """Balls that hop on a light undamped block for ever: each ends with one line, some of them in flight."""
+    lines = []
+    for velocity in (2e-4, 3e-4, 5e-4):
+        vcor.write(case("body = 'block', mass = 0.003, stiffness = 1e4", impact=f"velocity = {velocity}, gravity = 9.81"))
+        done = vcor("run", "case.nml", "--print", "contacts")
+        if done.code != SUCCESS:
+            assert done.code == NUMERICAL and done.err.count("\n") == 1
+            lines.append(done.err)
+    assert any("stays within the reach of the structure, without damping for ever" in line for line in lines)
+
+
 def test_help(vcor):
     help_text = vcor.succeeds("help", "target.body")
     assert "one of plate, beam, rod, block," in help_text

@@ -112,7 +112,7 @@ def test_judged(vcor, row):
 
 
 def test_alumina_on_glass(vcor):
-    """What docs/validity.md says of each plate model, compared with the measured 0.98."""
+    """Each plate model, compared with the measured 0.98: docs/measurements.md."""
     names = "cor,cor_deviation,plate_wave_number,validity,validity_cause"
     path = ROOT / "examples" / "alumina_on_glass.nml"
     found = {}

@@ -14,6 +14,6 @@ def test_the_tables_and_the_figure_are_those_of_the_script(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     page = (ROOT / "docs/impact.md").read_text("utf-8")
-    assert compare(page, (tmp_path / "impact.md").read_text("utf-8")) == 3
+    assert compare(page, (tmp_path / "impact.md").read_text("utf-8")) == 5
     assert (tmp_path / "waves.svg").stat().st_size > 0
     assert 'src="waves.svg"' in page

@@ -84,6 +84,22 @@ def test_same_bits(solved, ranks, threads):
     same_files(solved.folder / folder, solved.folder / "ref")
 
 
+def test_structures(vcor):
+    """Impacts with several contacts, on any number of ranks."""
+    (vcor.folder / "modes.csv").write_text("frequency [Hz],damping_ratio,modal_mass [kg]\n900.0,0.01,0.02\n")
+    vcor.write(
+        "&impact velocity = 1.0 /\n&sphere radius = 0.005, material = 'steel' /\n"
+        "&plate material = 'steel' /\n&target body = 'modes', file = 'modes.csv' /\n"
+        "&material name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3,\n"
+        "   density = 7850 /\n"
+        "&sweep parameter = 'impact.velocity', values = 0.5, 1.0, 1.5, 2.0 /\n"
+    )
+    assert vcor("run", "case.nml", "--output", "ref").code == SUCCESS
+    done = run(vcor, 3, "case.nml", "--output", "out")
+    assert done.code == SUCCESS, done.err
+    same_files(vcor.folder / "out", vcor.folder / "ref")
+
+
 def test_one_voice(vcor):
     vcor.write(SLS)
     done = end(start(vcor, "-n", 2, program(), "--version"))

@@ -16,7 +16,7 @@ def pages(tmp_path_factory):
     """Folder of the pages, and what FORD said about them."""
     folder = tmp_path_factory.mktemp("ford") / "api"
     done = subprocess.run(
-        [sys.executable, "-m", "ford", "--output_dir", folder, ROOT / "docs/api.md"],
+        [sys.executable, "-m", "ford", "--output_dir", folder, ROOT / "docs/site/fortran.md"],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         encoding="utf-8",

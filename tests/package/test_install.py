@@ -152,7 +152,7 @@ def test_consumer_in_c(prefix, tmp_path):
     assert is_close(shown)
     folder = library_folder(prefix)
     env = {**os.environ, "PKG_CONFIG_PATH": str(folder / "pkgconfig")}
-    # the command of docs/library.md, of which pkg-config quotes the paths but for that of rpath
+    # the command of docs/python.md, of which pkg-config quotes the paths but for that of rpath
     command = 'eval gcc "$1" $(pkg-config --cflags --libs vcor-c) -o drop'
     run("sh", "-c", command, "sh", CONSUMER / "c/from_c.c", env=env, cwd=tmp_path)
     env = {**os.environ, "LD_LIBRARY_PATH": str(folder)}

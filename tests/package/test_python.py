@@ -52,6 +52,7 @@ def test_what_is_in_the_wheel(wheel):
     library = [name for name in names if ".so" in name]
     assert library == ["vcor/lib/libvcor_python.so"]
     assert {"vcor/case.py", "vcor/py.typed", "vcor/vcor.mplstyle", "vcor/page/page.js"} <= set(names)
+    assert {"vcor/page/live.html", "vcor/lib/materials/steel.nml"} <= set(names)
     assert not [name for name in names if "test" in name or name.endswith((".mod", ".a"))]
 
 

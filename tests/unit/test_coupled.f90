@@ -18,8 +18,12 @@ program test_coupled
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, prony_t
    use vcor_material_type, only : material_t
    use vcor_solver_coupled, only : coupled_t, new_coupled
+   use vcor_solver_coupled_course, only : course_ended, course_t
    use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
-   use vcor_solver_coupled_march, only : course_ended, course_t, march
+   use vcor_solver_coupled_march, only : march
+   use vcor_solver_coupled_peak, only : peak, peak_t
+   use vcor_solver_coupled_rule, only : differences, integrals, nodes, weights
+   use vcor_solver_coupled_spectrum, only : spectrum_t
    use vcor_solver_ive, only : ive_t
    use vcor_solver_type, only : default_accuracy, solver_settings_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
@@ -33,6 +37,8 @@ program test_coupled
    call suite("coupled")
    call test_response()
    call test_limits_of_response()
+   call test_weights()
+   call test_peak()
    call test_references()
    call test_elastic()
    call test_static()
@@ -142,6 +148,50 @@ contains
          right(i) = (right(i) - sum(matrix(i, i + 1:)*right(i + 1:)))/matrix(i, i)
       end do
    end subroutine solve_complex
+
+   !> Weights of a derivative, sum integrals W_n-j dt = differences, for numbers of steps that are
+   !> powers of two times an odd number, small or large
+   subroutine test_weights()
+      integer, parameter :: steps(3) = [160, 148, 4]
+      real(wp), parameter :: rounding = 1.0e-7_wp, dt = 0.01_wp
+      real(wp), allocatable :: weight(:, :)
+      real(wp) :: expected
+      integer :: i, n
+
+      do i = 1, size(steps)
+         weight = weights(reshape(dt*nodes(steps(i), dt), [1, steps(i)/2 + 1]))
+         do n = 0, steps(i) - 1
+            expected = 0.0_wp
+            if (n <= 2) expected = differences(n)
+            ! weights begin with 1
+            call check_close(sum(integrals(:min(n, 2))*weight(1, n + 1:n + 1 - min(n, 2):-1)), &
+               expected, rounding*abs(differences(0)), "weights of a derivative")
+         end do
+      end do
+   end subroutine test_weights
+
+   !> The top of a sine between its steps, and its error where the values scatter
+   subroutine test_peak()
+      integer, parameter :: steps = 160
+      real(wp), parameter :: noise = 1.0e-3_wp
+      type(random_t) :: random
+      type(peak_t) :: top
+      real(wp) :: value(0:steps)
+      integer :: i, n, missed
+
+      value = [(sin(pi*real(i, wp)/(real(steps, wp) - 0.3_wp)), i=0, steps)]
+      top = peak(value, 1.0_wp)
+      call check_close(top%value, 1.0_wp, 1.0e-7_wp, "the top of a sine")
+      call check_close(top%time, 0.5_wp*(real(steps, wp) - 0.3_wp), 1.0e-3_wp, "its time")
+      call check(top%scatter <= 1.0e-7_wp, "a sine does not scatter")
+      missed = 0
+      do n = 1, 100
+         top = peak(value + noise*[(random%between(-1.0_wp, 1.0_wp), i=0, steps)], 1.0_wp)
+         if (abs(top%value - 1.0_wp) > 3.0_wp*top%scatter) missed = missed + 1
+         call check(top%scatter <= noise, "the top scatters less than its values")
+      end do
+      call check(missed <= 2, "the top is within three errors")
+   end subroutine test_peak
 
    !> Thick layers are half spaces, slow waves are none, and small differences keep their digits
    subroutine test_limits_of_response()
@@ -638,11 +688,12 @@ contains
       real(wp), parameter :: window = 2.5e-3_wp, radius = 4.0e-3_wp
       type(mesh_t) :: mesh
       type(kernel_t) :: kernel
+      type(spectrum_t) :: spectrum
       type(error_t), allocatable :: error
 
       mesh = mesh_t(steps, springs, hats, window, radius)
       if (present(longer)) mesh%radius = longer*radius
-      call new_kernel(kernel, impact%face, mesh, error)
+      call new_kernel(kernel, impact%face, mesh, spectrum, error)
       if (.not. allocated(error)) call march(impact, kernel, course, error)
       if (allocated(error)) call success(error, "an impact is marched")
    end function course_on
@@ -870,6 +921,16 @@ contains
          trajectory%last), "the contact goes on for long")
       ! by 1280 steps in a fifth of the time
       call check_relative(trajectory%max_force, 620.65_wp, 1.0e-3_wp, "its largest force")
+      ! within the first of 320 steps of the contact; by 640 steps in a thousandth of it
+      call make_impact(impact, solid(146796.494_wp, [186287.067_wp, 43780.3362_wp], &
+         [10788.5025_wp, 623.465034_wp], 1006.11614_wp, 0.49_wp), base_free, 4.5633138698e-4_wp, &
+         0.03173044286533_wp, 1.0843769379e-4_wp, profile_factor(3102.503571_wp, 2.3496357943_wp), &
+         exponent=1.0_wp + 1.0_wp/2.3496357943_wp)
+      call solve(impact, trajectory)
+      call check(abs(trajectory%max_force - 2.25007e-4_wp) <= 3.0_wp*trajectory%max_force_error, &
+         "a force that comes in the first step is within three stated errors")
+      call check(trajectory%max_force_error <= 0.01_wp*trajectory%max_force, &
+         "its error is small")
       ! a blunt body on an incompressible layer begins with a force that no step resolves
       call make_impact(impact, solid(2.0e6_wp, [1.0e6_wp, 1.0e6_wp, 3.0e6_wp], [100.0_wp, &
          3.0e3_wp, 4.0e4_wp], 1100.0_wp, 0.5_wp), base_bonded, 0.01_wp, 2.0_wp, 0.01_wp, &

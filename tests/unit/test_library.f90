@@ -5,17 +5,18 @@ program test_library
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, &
       ieee_value
    use vcor, only : base_bonded, base_free, base_half_space, base_sliding, case_t, case_text, &
-      cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
-      contact_resting, contact_separated, contact_sticking, error_file, error_input, &
-      error_numerical, error_t, error_usage, face_t, failures_t, &
-      history_table, impact_t, inputs_t, material_t, mittag_leffler_t, new_cerf, &
-      new_contact_law, new_contact_modulus, new_elastic, new_face, new_impact, new_mittag_leffler, &
-      new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
-      new_tabulated, outcome_t, override, pair_eq1, pair_series, target_t, power_law_t, &
-      problem_of_case, problem_t, prony_t, read_case, read_case_text, read_data, &
-      solve_impact, solve_sweep, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
-      table_t, tabulated_t, trajectory_t, validate, version, waves_constant, &
-      waves_frozen, waves_hereditary, waves_none, waves_relaxing, wp, write_csv, write_hdf5
+      cerf_t, contact_lasting, contact_law_t, contact_modulus_t, contact_resting, &
+      contact_separated, contact_sticking, error_file, error_input, error_numerical, error_t, &
+      error_usage, face_t, failures_t, history_table, impact_t, inputs_t, material_t, &
+      mittag_leffler_t, new_beam, new_block, new_cerf, new_contact_law, new_contact_modulus, &
+      new_elastic, new_face, new_impact, new_mittag_leffler, new_panel, new_plate, new_power_law, &
+      new_prony, new_rigid, new_rod, new_sls, new_solver, new_structure, new_sweep, new_tabulated, &
+      new_target, outcome_t, override, pair_eq1, pair_series, power_law_t, problem_of_case, &
+      problem_t, prony_t, read_case, read_case_text, read_data, solve_impact, solve_sweep, &
+      solver_settings_t, solver_t, structure_t, summary_t, summary_table, support_cantilever, &
+      support_clamped, support_free, support_supported, sweep_t, table_t, tabulated_t, target_t, &
+      trajectory_t, validate, version, waves_constant, waves_frozen, waves_hereditary, waves_none, &
+      waves_relaxing, wp, write_csv, write_hdf5
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    implicit none
 
@@ -29,6 +30,7 @@ program test_library
    call test_materials()
    call test_unbuilt()
    call test_impacts()
+   call test_structures()
    call test_refusals()
    call test_case()
    call test_errors()
@@ -201,6 +203,67 @@ contains
          call check(trajectory%status == other%status, "the course is that of the outcome")
       end do
    end subroutine test_impacts
+
+   !> Structures of every kind are struck
+   subroutine test_structures()
+
+      real(wp), parameter :: mass = 4.1e-3_wp, length = 0.1_wp, highest = 1.0e7_wp, spring = 1.0e8_wp
+      type(prony_t) :: steel, rigid
+      type(contact_modulus_t) :: modulus
+      type(structure_t) :: structure
+      type(target_t) :: target
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      real(wp) :: first
+      integer :: i
+
+      call new_elastic(steel, 210.0e9_wp, error)
+      call steel%set_constants(error, 7850.0_wp, 0.3_wp)
+      call success(error, "steel is built")
+      call new_contact_modulus(modulus, steel, steel, .true., error)
+      first = 0.0_wp
+      do i = 1, 8
+         select case (i)
+         case (1)
+            call new_block(structure, 0.2_wp, spring, 0.0_wp, error)
+         case (2)
+            ! the same as a list of modes
+            call new_structure(structure, [spring/0.2_wp], [0.0_wp], [1.0_wp/0.2_wp], error)
+         case (3)
+            call new_rod(structure, steel, length, 0.02_wp, support_free, 0.01_wp, highest, error)
+         case (4)
+            call new_panel(structure, steel, length, length, 0.01_wp, [0.5_wp, 0.4_wp]*length, &
+               0.01_wp, highest, error)
+         case default
+            call new_beam(structure, steel, length, 0.02_wp, 0.02_wp, i - 4, 0.4_wp*length, &
+               0.01_wp, highest, error)
+         end select
+         call success(error, "a structure is built")
+         call new_target(target, structure)
+         call new_impact(impact, 1.0_wp, mass, 0.005_wp, 0.0_wp, modulus, target, error)
+         call solve_impact(impact, outcome, error)
+         call success(error, "an impact on a structure is solved")
+         call check(outcome%status == contact_separated .and. outcome%cor_sphere < 1.0_wp, &
+            "a structure takes energy")
+         if (i == 1) first = outcome%cor_sphere
+         if (i == 2) call check_close(outcome%cor_sphere, first, tolerance, &
+            "a block is a list of one mode")
+      end do
+      call check(all([support_supported, support_clamped, support_cantilever, support_free] &
+         == [1, 2, 3, 4]), "the beams had every support")
+      call new_block(structure, 0.0_wp, spring, 0.0_wp, error)
+      call refused(error, error_input, "a block without mass")
+      call new_rigid(rigid)
+      call new_rod(structure, rigid, length, 0.02_wp, support_free, 0.0_wp, highest, error)
+      call refused(error, error_input, "a rigid rod")
+      call new_beam(structure, steel, length, 0.0_wp, 0.01_wp, support_free, 0.0_wp, 0.0_wp, &
+         highest, error)
+      call refused(error, error_input, "a beam without width")
+      call new_panel(structure, steel, length, length, 0.01_wp, [0.5_wp, 1.5_wp]*length, 0.0_wp, &
+         highest, error)
+      call refused(error, error_input, "an impact beside a plate")
+   end subroutine test_structures
 
    !> What an impact cannot be made of
    subroutine test_refusals()

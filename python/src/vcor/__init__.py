@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .materials.fit import Fit, fit
     from .materials.identification import identify
     from .materials.master import master
+    from .page import Live
     from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
     from .uncertainty import propagate, sensitivities
     from .uncertainty_sweep import bands
@@ -101,6 +102,26 @@ def _of_data(name: str) -> Any:
 
 Case.plot = _plot
 points.read, points.plain_name = _of_data("read_points"), _of_data("plain_name")
+
+
+def _page(self: Case, *, port: int | None = None) -> "Live":
+    """Open a live page of the case, below the cell of a notebook; needs Bokeh.
+
+    Parameters
+    ----------
+    port
+        Port on 127.0.0.1; None: a free one.
+
+    Returns
+    -------
+    vcor.page.Live
+        The page, with `url` for a browser of this machine; `stop` ends it.
+    """
+    made: Live = importlib.import_module("vcor.page").live(self, port=port)
+    return made
+
+
+Case.page = _page
 
 #: What needs scipy or reads files, by its module; imported when it is used
 _LATER = {

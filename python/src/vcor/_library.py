@@ -172,8 +172,10 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_replace_material": [c_void_p, c_char_p, c_char_p, c_char_p],
     "vcor_remove_sweeps": [c_void_p],
     "vcor_set": [c_void_p, c_char_p, c_char_p],
+    "vcor_unset": [c_void_p, c_char_p],
     "vcor_get": [c_void_p, c_char_p, POINTER(c_void_p)],
     "vcor_describe": [c_void_p, c_char_p, POINTER(ColumnStruct)],
+    "vcor_catalogue": [POINTER(c_void_p)],
     "vcor_case_text": [c_void_p, c_int, POINTER(c_void_p)],
     "vcor_save": [c_void_p, c_char_p, c_int],
     "vcor_axis": [c_void_p, c_int, POINTER(ColumnStruct), POINTER(c_int), POINTER(c_void_p)],
@@ -267,7 +269,8 @@ def _forget_worker() -> None:
 os.register_at_fork(after_in_child=_forget_worker)
 #: Functions that end at once
 _QUICK = (
-    "vcor_copy", "vcor_dump", "vcor_load", "vcor_name", "vcor_set", "vcor_get", "vcor_describe",
+    "vcor_copy", "vcor_dump", "vcor_load", "vcor_name", "vcor_set", "vcor_unset", "vcor_get",
+    "vcor_describe", "vcor_catalogue",
 )  # fmt: skip
 #: Functions of a material, a microsecond a number at most, and for how many they end at once
 _MODULI, _FEW = ("vcor_relaxation", "vcor_complex_modulus"), 100_000

@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 
 #: Time that a call of the library should take [s]: what Ctrl-C waits for
 _CHUNK_TIME = 0.3
-#: Status of a point whose values make no impact
-_INVALID = 3
+#: Status of an impact with a result, and of a point whose values make no impact
+SEPARATED, INVALID = 0, 3
 
 
 def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Case:
@@ -137,6 +137,8 @@ class Case:
     _pointer: _library.Handle
     #: `figure` of `vcor.plot`, which the package sets: figures know cases, cases no figures
     plot: ClassVar[Callable[..., Figure]]
+    #: `live` of `vcor.page`, which the package sets, too
+    page: ClassVar[Callable[..., Any]]
 
     def __init__(self, source: str | Groups, *, name: str = "case.nml") -> None:
         if isinstance(source, Mapping):
@@ -160,6 +162,10 @@ class Case:
         """Set a value; what the impact does not read is refused when it is solved."""
         text = value if isinstance(value, str) else written(value, address)
         call("vcor_set", self._pointer, address, text)
+
+    def __delitem__(self, address: str) -> None:
+        """Remove a value, so that its default holds; by its name a group, or a material."""
+        call("vcor_unset", self._pointer, address)
 
     def __getitem__(self, address: str) -> Value | None:
         """Value at an address, given or by default; None if there is none."""
@@ -286,7 +292,7 @@ class Case:
         wanted = [*_coverage.with_judged(names), "status"]
         found, remark = self._solve(list(point), row, wanted, 1)
         if remark:
-            kind = InputError if found[0, -1] == _INVALID else NumericalError
+            kind = InputError if found[0, -1] == INVALID else NumericalError
             raise kind(f"{self.name}: {_reason(remark)}")
         results = found[0].tolist()
         made = _coverage.Numbers(
@@ -397,17 +403,21 @@ class Case:
             The case is wrong, or a sweep.
         """
         self._warn({})
-        columns = list(_library.columns(1).values())
-        rows, pointer = c_int(), c_void_p()
-        call("vcor_history", self._pointer, byref(rows), byref(pointer))
-        values = _library.take_numbers(pointer, rows.value * len(columns)).reshape(rows.value, -1).T
+        columns = _library.columns(1)
         variables = {
-            column.name: ("time", row, column.attrs)
-            for column, row in zip(columns, values, strict=True)
+            name: ("time", row, columns[name].attrs) for name, row in self._history().items()
         }
         time_axis = variables.pop("time")
         attrs = self._attrs({}) | _coverage.about_history(self)
         return _dataset(variables, {"time": time_axis}, attrs)
+
+    def _history(self) -> dict[str, Floats]:
+        """Columns of the history by name, without warnings."""
+        names = list(_library.columns(1))
+        rows, pointer = c_int(), c_void_p()
+        call("vcor_history", self._pointer, byref(rows), byref(pointer))
+        values = _library.take_numbers(pointer, rows.value * len(names)).reshape(rows.value, -1).T
+        return dict(zip(names, values, strict=True))
 
     def verify(self) -> xr.Dataset:
         """Solve the case by all methods and compare them, as `vcor verify CASE` does.

@@ -328,14 +328,20 @@ def _loop(wishes: _Wishes) -> Figure:
     fx, x_unit = _scale("m", *[course["indentation"] for course in courses])
     fy, y_unit = _scale("N", *[course["force"] for course in courses])
     made, (axis,) = _new(wishes, 1, 1)
+    # coupled contact: the indentation is the path of the sphere
+    losses = [result.number("hysteresis_energy") for result in wishes.results]
+    losses = [
+        result.number("energy_loss") if np.isnan(lost) else lost
+        for result, lost in zip(wishes.results, losses, strict=True)
+    ]
+    # three times the stated error of cor, as an energy
+    errors = [
+        np.nan_to_num(6.0 * result.number("initial_energy") * result.number("cor_error"))
+        for result in wishes.results
+    ]
+    factor, unit = _scale("J", *losses, *errors)
     for i, (result, course) in enumerate(zip(wishes.results, courses, strict=True)):
-        lost = result.number("hysteresis_energy")
-        if np.isnan(lost):
-            # coupled contact: the indentation is the path of the sphere
-            lost = result.number("energy_loss")
-        # three times the stated error of cor, as an energy
-        error = np.nan_to_num(6.0 * result.number("initial_energy") * result.number("cor_error"))
-        factor, unit = _scale("J", max(lost, error))
+        lost, error = losses[i], errors[i]
         words = f"energy loss {factor * lost:.4g} {unit}"
         if abs(lost) < error:
             words = f"energy loss < {factor * error:.1g} {unit}"
@@ -403,11 +409,11 @@ def _moduli(wishes: _Wishes) -> Figure:
             _curve(axis, number, fx * one[over], values, None if single and k == 0 else label)
             mark = ends[k > 0]
             if np.isfinite(mark) and not (single and k > 1) and (several or i == 0):
-                color = axis.lines[-1].get_color() if several else "0.5"
+                color = axis.lines[-1].get_color() if several else "0.25"
                 time, shown = _scale("s", mark)
                 said = _least(mark, hertz) if k else f"t₀ = {time * mark:.4g} {shown}"
                 axis.axvline(
-                    fx * mark, color=color, lw=0.6, ls=":", label=None if several else said
+                    fx * mark, color=color, lw=0.9, ls=":", label=None if several else said
                 )
             if i == 0:
                 _points(axis, wishes.data, over, name, fx, fy, shift=k if single else 0)
@@ -580,8 +586,8 @@ def _map(wishes: _Wishes) -> Figure:
 def _label_places(axis: Axes, drawn: Any) -> list[tuple[float, float]]:
     """A place on each level of a map for its number.
 
-    It is inside the frame, next to the diagonal that leaves the fewest levels out, and clear of
-    the others.
+    It is inside the frame and clear of the others, as near as possible to the diagonal that leaves
+    the fewest levels out. A level whose line is shorter than its number has none.
     """
     back, across = axis.transAxes.inverted(), axis.transData
     best: list[tuple[float, float]] = []
@@ -592,12 +598,19 @@ def _label_places(axis: Axes, drawn: Any) -> list[tuple[float, float]]:
             if not len(path.vertices):
                 continue
             at = back.transform(across.transform(path.vertices))
-            inside = np.all((at > 0.08) & (at < 0.92), axis=1)
-            off = np.where(inside, np.abs(sign * (at[:, 0] - 0.5) - (at[:, 1] - 0.5)), np.inf)
-            k = int(np.argmin(off))
-            if inside[k] and all(np.hypot(*(at[k] - other)) > 0.08 for other in taken):
-                taken.append(at[k])
-                found.append((float(path.vertices[k, 0]), float(path.vertices[k, 1])))
+            if np.max(np.ptp(at, axis=0)) < 0.06:
+                continue
+            off = np.abs(sign * (at[:, 0] - 0.5) - (at[:, 1] - 0.5))
+            # in the corners too, where nothing else is left
+            for margin in (0.08, 0.04):
+                inside = np.all((at > margin) & (at < 1 - margin), axis=1)
+                for other in taken:
+                    inside &= np.hypot(*(at - other).T) > 0.08
+                if inside.any():
+                    k = int(np.argmin(np.where(inside, off, np.inf)))
+                    taken.append(at[k])
+                    found.append((float(path.vertices[k, 0]), float(path.vertices[k, 1])))
+                    break
         best = max(best, found, key=len)
     return best
 

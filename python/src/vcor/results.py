@@ -111,7 +111,9 @@ def as_csv(data: xr.Dataset) -> str:
     columns = [*data.coords.values(), *data.data_vars.values()]
     units = [f" [{one.attrs['units']}]" if "units" in one.attrs else "" for one in columns]
     head = [
-        f"vcor {data.attrs['version']}", f"title: {data.attrs['title']}", "columns:",
+        f"vcor {data.attrs['version']}", f"title: {data.attrs['title']}",
+        *(f"samples: {data.attrs['samples']}" for _ in [0] if "samples" in data.attrs),
+        "columns:",
         *(f"  {one.name}{unit} {one.attrs['long_name']}"
           for one, unit in zip(columns, units, strict=True)),
         "case:", *data.attrs["case"].splitlines(),

@@ -145,7 +145,7 @@ def legends_of(results: list[Result]) -> list[str]:
         for key in keys:
             with contextlib.suppress(Error):
                 unit = Case(results[0].case, name=results[0].path)._describe(key).unit
-                units[key] = unit if unit != "1" else ""
+                units[key] = {"1": "", "1/s": "s⁻¹"}.get(unit, unit)
         names = {key: key.rpartition(".")[2].replace("_", " ") for key in keys}
         words = [", ".join(f"{name} = {_short(one[key])} {units.get(key, '')}".strip()
                            for key, name in names.items() if key in one)

@@ -3,30 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
-import math
-import os
-import time
-import warnings
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from . import _command
-from ._coverage import unwarned
-from ._library import Error
 from ._outputs import finish
-from ._text import option
-from .case import Case, as_case, read, with_values
+from .case import read
 from .results import as_csv, as_hdf5
 from .uncertainty import USUAL, propagate
 from .uncertainty_sweep import bands
-
-#: Time that is announced [s]
-LONG = 60.0
-#: Time of an impact up to which some more are solved to tell it better [s]
-SHORT = 2.0
 
 
 def _parser() -> _command.Parser:
@@ -46,7 +31,7 @@ def _parser() -> _command.Parser:
     add("--vary", metavar="ADDRESS=SPREAD", action="append", default=[], help=spreads)
     add("--covariance", metavar="FIT.json", help="JSON of vcor fit or vcor identify")
     add("--samples", metavar="N", type=int, default=4096,
-        help="impacts that are solved, about, at each point of a sweep; default: 4096")  # fmt: skip
+        help="samples, about, at each point of a sweep; default: 4096")  # fmt: skip
     add(
         "--quantity",
         dest="quantities",
@@ -58,31 +43,6 @@ def _parser() -> _command.Parser:
     return parser
 
 
-def _announce(case: Case, samples: int, threads: int | None) -> None:
-    """Say how long it may take, if that is long."""
-    axes, one = as_case(case)._axes(), case
-    for address, values in axes.items():
-        one = with_values(one, {address: float(values[0])})
-    begin = time.perf_counter()
-    with contextlib.suppress(Error), unwarned():
-        one.solve(quantities=["cor"])
-    impacts = samples * math.prod(len(values) for values in axes.values())
-    each, cores = time.perf_counter() - begin, threads or os.cpu_count() or 1
-    if each * impacts / cores > LONG and each < SHORT:
-        # once more as the samples are solved: many at once, after what only the first one takes
-        drop = one["impact.drop_height"] is not None
-        address = "impact.drop_height" if drop else "impact.velocity"
-        table = np.full((4 * cores, 1), one[address], dtype=float)
-        begin = time.perf_counter()
-        one._solve([address], table, ["cor"], threads or 0)
-        each = (time.perf_counter() - begin) * cores / len(table)
-    if (seconds := each * impacts / cores) > LONG:
-        warnings.warn(
-            f"{case.name}: {impacts} impacts take some {math.ceil(seconds / 60)} min; "
-            f"{option('samples')} with a smaller number takes less", stacklevel=2,
-        )  # fmt: skip
-
-
 def _work(options: argparse.Namespace) -> None:
     vary: dict[str, str | float] = {}
     for word in options.vary:
@@ -91,7 +51,6 @@ def _work(options: argparse.Namespace) -> None:
     for word in options.set:
         address, _, case[address] = word.partition("=")
     swept = bool(case._axes())
-    _announce(case, options.samples, options.threads)
     found = (bands if swept else propagate)(
         case,
         vary,

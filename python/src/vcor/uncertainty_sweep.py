@@ -16,7 +16,8 @@ from . import _library, _text
 from ._coverage import unwarned
 from ._library import NoResultWarning, NumericalError, UsageError, ValidityWarning
 from .case import Case, as_case, with_values
-from .uncertainty import PERCENTILES, USUAL, Spread, Uncertainty, propagate
+from .uncertainty import PERCENTILES, USUAL, Drawn, Spread, Uncertainty, how
+from .uncertainty_samples import sampled
 
 #: Most points of the sweep that a report shows
 ROWS = 12
@@ -33,7 +34,8 @@ class Bands:
     """Uncertainty of the results along a sweep; `str` is the report of the command."""
 
     #: Over the swept address: each quantity, NAME_numerical, NAME_material, NAME_exact, its
-    #: percentiles NAME_p2.5 to NAME_p97.5, validity and validity_cause; nan without a result
+    #: percentiles NAME_p2.5 to NAME_p97.5, validity and validity_cause; nan without a result; the
+    #: attribute `samples` says how they were found if not all were solved
     table: xr.Dataset
     quantities: list[str]
     #: All that is known of each point of the sweep, None where there is no result
@@ -87,7 +89,7 @@ def bands(
     vary, covariance
         As for `propagate`. The swept parameter may vary about its values: "5%" or "0.1".
     samples
-        Impacts that are solved at each value, about.
+        Samples at each value, about.
     quantities
         Columns of the summary; by default all quantities that the impacts have.
     seed, threads
@@ -98,6 +100,20 @@ def bands(
     Bands
         Quantities and their percentiles over the swept parameter.
     """
+    return _bands(case, vary, covariance, samples, quantities, seed, threads)
+
+
+def _bands(
+    case: Case | str | os.PathLike[str],
+    vary: Mapping[str, str | float] | None,
+    covariance: str | os.PathLike[str] | Mapping[str, Any] | None,
+    samples: int,
+    quantities: Sequence[str],
+    seed: int,
+    threads: int | None,
+    corrected: bool | None = None,
+) -> Bands:
+    """As `bands`; `corrected` as for `uncertainty_samples.sampled`."""
     case = as_case(case)
     axes = case._axes()
     if quantities is USUAL:
@@ -114,18 +130,27 @@ def bands(
         if address in joint.addresses:
             raise UsageError(f"{address}: this parameter is swept, and the covariance has it; "
                              "expected one of the two")  # fmt: skip
-    points: list[Uncertainty | None] = []
+    drawn: dict[int, Drawn] = {}
+    points: list[Uncertainty | None] = [None] * len(values)
     failures = []
-    for value in values:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        for i, value in enumerate(values.tolist()):
             try:
-                points.append(propagate(
-                    with_values(case, {address: float(value)}), wanted, covariance=covariance,
-                    samples=samples, quantities=quantities, seed=seed, threads=threads,
-                ))  # fmt: skip
+                drawn[i] = Drawn.of(with_values(case, {address: value}), wanted, covariance,
+                                    samples, quantities, seed, (address, value))  # fmt: skip
             except NumericalError as error:
-                points.append(None)
+                failures.append(error)
+    if not drawn:
+        raise failures[0]
+    names = next(iter(drawn.values())).quantities
+    found = sampled([one.plan for one in drawn.values()], names, seed, threads, corrected)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        for k, (i, one) in enumerate(drawn.items()):
+            try:
+                points[i] = one.uncertainty(found, k)
+            except NumericalError as error:
                 failures.append(error)
     good = next((one for one in points if one), None)
     if not good:
@@ -147,10 +172,13 @@ def bands(
     for name in ("validity", "validity_cause"):
         words = [getattr(one, name) if one else "none" for one in points]
         columns[name] = np.array(words), _library.columns(0)[name].attrs
+    attrs = case._attrs({})
+    if said := how(good.solved, good.fresh, good.table.correction):
+        attrs["samples"] = said
     table = xr.Dataset(
-        {name: (address, column, attrs) for name, (column, attrs) in columns.items()},
+        {name: (address, column, units) for name, (column, units) in columns.items()},
         coords={address: (address, values, case._describe(address).attrs)},
-        attrs=case._attrs({}),
+        attrs=attrs,
     )
     return Bands(table, good.quantities, points)
 
@@ -227,4 +255,6 @@ def _report(found: Bands) -> str:
     for source in ends[0].table.source.values:
         shares = [float(one.table.total.sel(quantity=name, source=source)) for one in ends]
         lines.append(f"{str(source):44s}{shares[0]:12.3f}{shares[1]:12.3f}")
+    if "samples" in table.attrs:
+        lines += ["", table.attrs["samples"]]
     return "\n".join(lines) + "\n"

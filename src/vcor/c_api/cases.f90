@@ -9,24 +9,26 @@ module vcor_c_api_cases
    use vcor_c_api_values, only : c_column_t, c_text, demand, new_column, put_column, put_copy, &
       put_pointer, refuse_long, report_error
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_case_catalogue, only : catalogue, find_group, list_key
+   use vcor_case_catalogue, only : catalogue, find_group, groups, list_key
    use vcor_case_checks, only : validate
+   use vcor_case_described, only : described_groups
    use vcor_case_printed, only : case_text, value_text
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_case_reader, only : add_materials, override, read_case, read_case_text
    use vcor_io_data_file, only : file_keys
    use vcor_io_dump, only : dump_case, load_case
    use vcor_io_file, only : write_file
    use vcor_io_path, only : folder_of, full_path, join_path
    use vcor_io_posix, only : fortran => fortran_text
+   use vcor_json, only : array
    use vcor_number, only : real_text
-   use vcor_text, only : integer_text, printable
+   use vcor_text, only : integer_text, printable, shortened
    implicit none
    private
 
    public :: vcor_read, vcor_free, vcor_copy, vcor_dump, vcor_load, vcor_name, vcor_add_materials, &
-      vcor_replace_material, vcor_remove_sweeps, vcor_set, vcor_get, vcor_describe, &
-      vcor_case_text, vcor_save
+      vcor_replace_material, vcor_remove_sweeps, vcor_set, vcor_unset, vcor_get, vcor_describe, &
+      vcor_catalogue, vcor_case_text, vcor_save
 
 contains
 
@@ -285,6 +287,60 @@ contains
       code = report_error(trouble, error)
    end function vcor_set
 
+   !> Remove a value or a group
+   function vcor_unset(self, address, error) bind(c) result(code)
+      type(c_ptr), value :: self, address, error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(address_t) :: place
+
+      call open_case(self, handle, trouble)
+      call demand(address, 'address', trouble)
+!$omp critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         call find_removed(handle%case, trim(adjustl(fortran(address))), place, trouble)
+      end if
+      if (.not. allocated(trouble)) then
+         if (place%row == 0) then
+            call handle%case%remove(place%group, place%item)
+         else
+            call handle%case%withdraw(place)
+         end if
+         call forget(handle)
+         ! its mesh may be that of another impact
+         if (allocated(handle%solver)) deallocate (handle%solver)
+      end if
+!$omp end critical (vcor_c_api)
+      code = report_error(trouble, error)
+   end function vcor_unset
+
+   !> Find what is to be removed: a value, a group that occurs once or a material
+   subroutine find_removed(case, name, place, error)
+      type(case_t), intent(in) :: case
+      !> An address, or the name of a group or of a material
+      character(len=*), intent(in) :: name
+      !> Its place; row 0 for a group or a material
+      type(address_t), intent(out) :: place
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      place%item = case%find_material(name)
+      if (place%item > 0) then
+         place%group = find_group('material')
+         return
+      end if
+      place%group = find_group(name)
+      if (place%group > 0) then
+         place%item = 1
+         if (.not. groups(place%group)%repeated) return
+      end if
+      call find_place(case, name, place, error)
+      if (.not. allocated(error) .and. place%element > 0) call raise(error, error_usage, &
+         shortened(name)//': found one number of a list, expected the list')
+   end subroutine find_removed
+
    !> Get the value at an address
    function vcor_get(self, address, value, error) bind(c) result(code)
       type(c_ptr), value :: self, address, value, error
@@ -348,6 +404,26 @@ contains
 !$omp end critical (vcor_c_api)
       code = report_error(trouble, error)
    end function vcor_describe
+
+   !> Get the groups and keys of cases
+   function vcor_catalogue(text, error) bind(c) result(code)
+      type(c_ptr), value :: text, error
+      integer(c_int) :: code
+
+      type(error_t), allocatable :: trouble
+      character(len=:), allocatable :: list
+
+      call put_pointer(text, c_null_ptr)
+      call demand(text, 'text', trouble)
+!$omp critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         list = array(described_groups())
+         ! a comma and the end of the line follow the bracket
+         call put_copy(text, c_text(list(:len(list) - 2)), trouble)
+      end if
+!$omp end critical (vcor_c_api)
+      code = report_error(trouble, error)
+   end function vcor_catalogue
 
    !> Get the case as namelists
    function vcor_case_text(self, complete, text, error) bind(c) result(code)

@@ -74,7 +74,7 @@ module vcor_case_case
       !> Items by group
       type(items_t), allocatable, private :: group(:)
    contains
-      procedure :: start, add, adopt, clear, is_materials, source_of, model
+      procedure :: start, add, adopt, clear, remove, withdraw, is_materials, source_of, model
       procedure :: find_material, material_of, address, path, row, number, given, unset, oust
       procedure :: trace, trace_item, refuse, has_thickness, has_second_sphere
       procedure :: count => count_items
@@ -109,9 +109,7 @@ contains
       !> Name of the case file, from which `output.stem` gets its default
       character(len=*), intent(in) :: source
 
-      character(len=*), parameter :: extension = '.nml'
-      character(len=:), allocatable :: stem
-      integer :: g, mark
+      integer :: g
 
       self%source = source
       if (allocated(self%folder)) deallocate (self%folder)
@@ -123,12 +121,25 @@ contains
          self%group(g)%n = 1
          call default_item(self%group(g)%item(1), g)
       end do
-      stem = trim(source(index(source, '/', back=.true.) + 1:))
-      mark = index(stem, extension, back=.true.)
-      if (mark > 1 .and. mark == len(stem) - len(extension) + 1) stem = stem(:mark - 1)
-      if (len(stem) == 0) stem = 'case'
-      call self%set(self%address('output', 'stem'), stem, given=.false.)
+      call choose_stem(self)
    end subroutine start
+
+   !> Name the files of results after the case file
+   pure subroutine choose_stem(self)
+      type(case_t), intent(inout) :: self
+
+      character(len=*), parameter :: extension = '.nml'
+      character(len=:), allocatable :: stem
+      integer :: mark
+
+      associate (source => self%source)
+         stem = trim(source(index(source, '/', back=.true.) + 1:))
+         mark = index(stem, extension, back=.true.)
+         if (mark > 1 .and. mark == len(stem) - len(extension) + 1) stem = stem(:mark - 1)
+         if (len(stem) == 0) stem = 'case'
+         call self%set(self%address('output', 'stem'), stem, given=.false.)
+      end associate
+   end subroutine choose_stem
 
    !> An item with defaults only
    pure subroutine default_item(item, group)
@@ -225,6 +236,30 @@ contains
 
       self%group(group)%n = 0
    end subroutine clear
+
+   !> Remove an item of a group; a group that occurs once is then as if it were not in the case
+   pure subroutine remove(self, group, item)
+      class(case_t), intent(inout) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Index of the item
+      integer, intent(in) :: item
+
+      integer :: i
+
+      associate (items => self%group(group))
+         if (groups(group)%repeated) then
+            do i = item, items%n - 1
+               items%item(i) = items%item(i + 1)
+            end do
+            items%n = items%n - 1
+         else
+            call default_item(items%item(item), group)
+         end if
+      end associate
+      call choose_mechanics(self)
+      if (group == find_group('output')) call choose_stem(self)
+   end subroutine remove
 
    !> Whether the case has materials only
    pure function is_materials(self) result(yes)
@@ -520,13 +555,24 @@ contains
          end if
       end associate
       call mark(self, address, entry%given)
-      if (address%group == find_group('target') &
-          .or. address == self%address('contact', 'mechanics') &
-          .or. address == self%address('plate', 'base') &
-          .or. address == self%address('plate', 'surface_radius') &
-          .or. address == self%address('plate', 'waves') &
-          .or. address == self%address('solver', 'method')) call choose_mechanics(self)
+      if (decides(self, address)) call choose_mechanics(self)
    end subroutine set_entry
+
+   !> Whether what the mechanics choose depends on an entry
+   pure function decides(self, address)
+      class(case_t), intent(in) :: self
+      type(address_t), intent(in) :: address
+      logical :: decides
+
+      decides = address%group == find_group('target') &
+         .or. address == self%address('contact', 'mechanics') &
+         .or. address == self%address('plate', 'base') &
+         .or. address == self%address('plate', 'surface_radius') &
+         .or. address == self%address('plate', 'waves') &
+         .or. address == self%address('solver', 'method') &
+         .or. address == self%address('contact', 'law') &
+         .or. address == self%address('contact', 'pair')
+   end function decides
 
    !> Whether the plate has a thickness, under either of its names
    pure function has_thickness(self) result(has)
@@ -648,6 +694,16 @@ contains
       call set_default(self%group(address%group)%item(address%item)%entry(address%row), &
          address%row)
    end subroutine unset
+
+   !> Take back a value that was given: its default holds, or what the mechanics choose
+   pure subroutine withdraw(self, address)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
+
+      call self%unset(address)
+      if (decides(self, address)) call choose_mechanics(self)
+      if (address == self%address('output', 'stem')) call choose_stem(self)
+   end subroutine withdraw
 
    !> Reset the key that excludes a given one, as drop_height does velocity, and vice versa
    pure subroutine oust(self, address, always)

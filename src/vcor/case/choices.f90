@@ -87,7 +87,7 @@ module vcor_case_choices
          'internal variables of a sum of exponentials, by collocation'), &
       choice_t('solver.method', 'direct', 'time steps of the integral equation'), &
       choice_t('solver.method', 'coupled', "contact and waves together, of waves = 'body'"), &
-      choice_t('solver.scheme', 'product', 'product integration: second order, always stable'), &
+      choice_t('solver.scheme', 'product', 'product integration: order 2 to 5/2, always stable'), &
       choice_t('solver.scheme', 'adams_bashforth', "the paper's explicit scheme"), &
       choice_t('solver.form', 'a', 'by parts: the rate of u'), &
       choice_t('solver.form', 'b', 'by parts: the rate of the kernel, which must be finite at 0'), &

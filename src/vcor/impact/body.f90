@@ -46,8 +46,46 @@ contains
       real(wp), intent(in) :: damping
       type(error_t), allocatable, intent(out) :: error
 
-      call new_structure(self, [stiffness/mass], [damping/mass], [1.0_wp/mass], error)
+      if (mass > 0.0_wp) then
+         call new_structure(self, [stiffness/mass], [damping/mass], [1.0_wp/mass], error)
+      else
+         call raise(error, error_input, 'expected a mass > 0 of a block', about='mass')
+      end if
    end subroutine new_block
+
+   !> Check what a body is made of
+   pure subroutine check_body(material, sizes, damping_ratio, highest, error)
+      class(material_t), intent(in) :: material
+      !> Sizes of the body [m]
+      real(wp), intent(in) :: sizes(:)
+      !> Damping ratio of all modes [-]
+      real(wp), intent(in) :: damping_ratio
+      !> Frequency up to which modes are kept [rad/s]
+      real(wp), intent(in) :: highest
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. material%is_built()) then
+         call raise(error, error_input, 'the material of the structure is empty: no procedure ' &
+            //'new_... has built it')
+      else if (material%rigid .or. .not. material%density() > 0.0_wp) then
+         call raise(error, error_input, 'a structure needs a material that deforms, and its ' &
+            //'density', about='density')
+      else if (.not. (all(sizes > 0.0_wp) .and. damping_ratio >= 0.0_wp .and. highest > 0.0_wp)) then
+         call raise(error, error_input, 'expected sizes and a highest frequency > 0 of a ' &
+            //'structure, and a damping ratio >= 0')
+      end if
+   end subroutine check_body
+
+   !> Check a place along a body
+   pure subroutine check_place(position, length, error)
+      !> Position and length [m]
+      real(wp), intent(in) :: position, length
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. (position >= 0.0_wp .and. position <= length)) call raise(error, error_input, &
+         'the impact is beyond the end of the structure: expected 0 <= position <= length', &
+         about='position')
+   end subroutine check_place
 
    !> A slender beam of rectangular section, struck across its length
    pure subroutine new_beam(self, material, length, width, thickness, support, position, &
@@ -71,6 +109,9 @@ contains
       real(wp) :: modulus, stiffness, line, unit, x
       integer :: n, k
 
+      call check_body(material, [length, width, thickness], damping_ratio, highest, error)
+      if (.not. allocated(error)) call check_place(position, length, error)
+      if (allocated(error)) return
       modulus = storage_modulus(material, highest)
       stiffness = modulus*width*thickness**3/12.0_wp
       line = material%density()*width*thickness
@@ -112,6 +153,8 @@ contains
       real(wp) :: modulus, area, unit, mass, flexibility
       integer :: n, k
 
+      call check_body(material, [length, diameter], damping_ratio, highest, error)
+      if (allocated(error)) return
       modulus = storage_modulus(material, highest)
       area = 0.25_wp*pi*diameter**2
       mass = material%density()*area*length
@@ -151,6 +194,10 @@ contains
       real(wp) :: modulus, stiffness, surface, unit, square, along, across, last
       integer :: i, j, n, most
 
+      call check_body(material, [length, width, thickness], damping_ratio, highest, error)
+      if (.not. allocated(error)) call check_place(position(1), length, error)
+      if (.not. allocated(error)) call check_place(position(2), width, error)
+      if (allocated(error)) return
       modulus = storage_modulus(material, highest)
       stiffness = modulus*material%plane_strain_factor()*thickness**3/12.0_wp
       surface = material%density()*thickness
@@ -252,6 +299,7 @@ contains
       kept(size(w) + 1:) = residual > epsilon(1.0_wp)*static
       call new_structure(self, pack(all_w**2, kept), 2.0_wp*damping_ratio*pack(all_w, kept), &
          pack(all_yield, kept), error, 0.0_wp, material, modulus)
+      self%lumped = count(kept(size(w) + 1:))
    end subroutine assemble
 
    !> Mode of a beam of unit length, mass and stiffness

@@ -60,6 +60,7 @@ module vcor_impact_problem
       procedure :: outruns
       procedure :: first_force
       procedure :: ringing
+      procedure :: firmness_after
       procedure :: contact_radius
       procedure :: springs_back
       procedure :: inelasticity
@@ -191,30 +192,35 @@ contains
       force = drag*self%velocity/(1.0_wp + self%target%alpha(0.0_wp)*drag)
    end function first_force
 
-   !> Deflection with which the fast modes of a structure ring after the first touch. The force
-   !> ~ t^n is smooth but for its start, which leaves a mode of frequency w with the amplitude
-   !> n! F(1/w) y/w^2; the amplitudes of all modes are added
-   pure function ringing(self, slowest) result(deflection)
+   !> Amplitude with which a mode of a structure rings after first touch. The force F(t) ~ t^n is
+   !> smooth but for its start, which leaves a fast mode with the amplitude n! F(1/w) y/w^2; a slow
+   !> one has no more than that of the time scale
+   pure function ringing(self, frequency, yield, time_scale) result(amplitude)
       class(impact_t), intent(in) :: self
-      !> Frequency from which modes count [rad/s], > 0
-      real(wp), intent(in) :: slowest
-      !> Deflection [m]; 0 without a structure
-      real(wp) :: deflection
+      !> Frequency w [rad/s], > 0, and yield y [1/kg] of the mode
+      real(wp), intent(in) :: frequency, yield
+      !> Time scale of the contact [s]
+      real(wp), intent(in) :: time_scale
+      !> Amplitude [m]
+      real(wp) :: amplitude
 
-      real(wp) :: w
-      integer :: n
+      real(wp) :: time
 
-      deflection = 0.0_wp
-      if (.not. self%target%structure%exists()) return
-      associate (modes => self%target%structure)
-         do n = 1, size(modes%square)
-            w = sqrt(modes%square(n))
-            if (w > slowest) deflection = deflection + modes%yield(n)/w**2 &
-               *self%kernel(1.0_wp/w)*self%law%u(self%velocity/w)
-         end do
-      end associate
-      deflection = gamma(self%law%start_exponent + 1.0_wp)*deflection
+      time = min(1.0_wp/frequency, time_scale)
+      amplitude = gamma(self%law%start_exponent + 1.0_wp)*self%firmness_after(time) &
+         *self%law%u(self%free_path(time))*yield*time**2
    end function ringing
+
+   !> Force over u a time after it began to grow: the kernel, and the viscosity over the time
+   pure function firmness_after(self, time) result(firmness)
+      class(impact_t), intent(in) :: self
+      !> Time [s], > 0
+      real(wp), intent(in) :: time
+      !> Firmness [N/m^1.5]
+      real(wp) :: firmness
+
+      firmness = self%kernel(time) + self%kernel_viscosity()/time
+   end function firmness_after
 
    !> Contact radius
    elemental function contact_radius(self, indentation) result(radius)

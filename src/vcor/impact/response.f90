@@ -106,7 +106,7 @@ contains
       real(wp) :: length(size(k))
       ! real and imaginary parts of y, a and b
       real(wp), dimension(size(k)) :: yr, yi, ar, ai, br, bi
-      real(wp) :: q, up_r, up_i, down_r, down_i, over_a, over_b, over
+      real(wp) :: q, up_r, up_i, down_r, down_i, size_a, size_b, over
       real(wp) :: square_r, square_i
       complex(wp) :: a, b
       integer :: i
@@ -115,27 +115,31 @@ contains
       square_r = real(p, wp)**2 - aimag(p)**2
       square_i = 2.0_wp*real(p, wp)*aimag(p)
       do i = 1, size(k)
-         yr(i) = square_r/k(i)**2
-         yi(i) = square_i/k(i)**2
+         over = 1.0_wp/k(i)**2
+         yr(i) = square_r*over
+         yi(i) = square_i*over
       end do
       call roots(1.0_wp + q*yr, q*yi, ar, ai)
       call roots(1.0_wp + yr, yi, br, bi)
-      ! D = S - T = (S^2 - T^2)/(S + T) = y poly/(S + T), and L - 1 with its factor y
+      ! D = S - T = (S^2 - T^2)/(S + T) = y poly/(S + T), and L - 1 with its factor y. Quotients by
+      ! 1 + a and 1 + b share a division, which takes as long as ten products
       do i = 1, size(k)
-         over_a = 4.0_wp*q/((1.0_wp + ar(i))**2 + ai(i)**2)
-         over_b = 4.0_wp/((1.0_wp + br(i))**2 + bi(i)**2)
+         size_a = (1.0_wp + ar(i))**2 + ai(i)**2
+         size_b = (1.0_wp + br(i))**2 + bi(i)**2
+         over = 4.0_wp/(size_a*size_b)
          ! 4 q/(1 + a) + 4/(1 + b) + a (4 + y) + 4 q b
-         up_r = over_a*(1.0_wp + ar(i)) + over_b*(1.0_wp + br(i)) + ar(i)*(4.0_wp + yr(i)) &
-            - ai(i)*yi(i) + 4.0_wp*q*br(i)
-         up_i = -over_a*ai(i) - over_b*bi(i) + ai(i)*(4.0_wp + yr(i)) + ar(i)*yi(i) &
+         up_r = over*(q*size_b*(1.0_wp + ar(i)) + size_a*(1.0_wp + br(i))) &
+            + ar(i)*(4.0_wp + yr(i)) - ai(i)*yi(i) + 4.0_wp*q*br(i)
+         up_i = -over*(q*size_b*ai(i) + size_a*bi(i)) + ai(i)*(4.0_wp + yr(i)) + ar(i)*yi(i) &
             + 4.0_wp*q*bi(i)
          ! 8 y + y^2
          square_r = yr(i)*(8.0_wp + yr(i)) - yi(i)**2
          square_i = yi(i)*(8.0_wp + 2.0_wp*yr(i))
          up_r = 2.0_wp*(1.0_wp - q)*up_r - (24.0_wp - 16.0_wp*q) - square_r
          up_i = 2.0_wp*(1.0_wp - q)*up_i - square_i
-         down_r = poly_real(yr(i), yi(i), square_r, square_i)
-         down_i = poly_imaginary(yr(i), yi(i), square_r, square_i)
+         ! 16 (1 - q) + y (24 - 16 q + 8 y + y^2)
+         down_r = 16.0_wp*(1.0_wp - q) + yr(i)*(24.0_wp - 16.0_wp*q + square_r) - yi(i)*square_i
+         down_i = yi(i)*(24.0_wp - 16.0_wp*q + square_r) + yr(i)*square_i
          over = 1.0_wp/(down_r**2 + down_i**2)
          square_r = (up_r*down_r + up_i*down_i)*over
          square_i = (up_i*down_r - up_r*down_i)*over
@@ -152,26 +156,6 @@ contains
          excess(i) = excess(i) + (1.0_wp + excess(i)) &
             *layer_factor(base, q, length(i), cmplx(yr(i), yi(i), wp), a, b)
       end do
-
-   contains
-
-      !> Real part of 16 (1 - q) + y (24 - 16 q + 8 y + y^2)
-      elemental function poly_real(yr, yi, square_r, square_i) result(value)
-         !> Parts of y and of 8 y + y^2
-         real(wp), intent(in) :: yr, yi, square_r, square_i
-         real(wp) :: value
-
-         value = 16.0_wp*(1.0_wp - q) + yr*(24.0_wp - 16.0_wp*q + square_r) - yi*square_i
-      end function poly_real
-
-      !> Its imaginary part
-      elemental function poly_imaginary(yr, yi, square_r, square_i) result(value)
-         !> Parts of y and of 8 y + y^2
-         real(wp), intent(in) :: yr, yi, square_r, square_i
-         real(wp) :: value
-
-         value = yi*(24.0_wp - 16.0_wp*q + square_r) + yr*square_i
-      end function poly_imaginary
    end subroutine wave_responses
 
    !> Factor of a layer on the L of the half space, less 1
@@ -184,10 +168,10 @@ contains
       complex(wp), intent(in) :: y, a, b
       complex(wp) :: ratio
 
-      complex(wp) :: s, t, d, kappa, even, less, ta, tb, more
+      complex(wp) :: s, t, d, kappa, even, less, ta, tb, more, swap
       ! of the wave that reaches farther, 1, and the other, 2: rate, exp(-2 length rate) and 1 less
-      ! that; f and w make up the difference of their tangents
-      complex(wp) :: rate, e1, e2, rest1, rest2, f, w
+      ! that; w makes up the difference of their tangents, tb - ta = sign f w (2 - w)
+      complex(wp) :: rate, e1, e2, rest1, rest2, w, f, both
       real(wp) :: sign
 
       sign = 1.0_wp
@@ -195,36 +179,50 @@ contains
       rate = a
       if (sign < 0.0_wp) rate = b
       rest1 = decay(2.0_wp*length*rate)
-      w = decay(length*sign*(1.0_wp - q)*y/(a + b))
+      w = decay((length*sign*(1.0_wp - q))*(y*over(a + b)))
       e1 = 1.0_wp - rest1
       e2 = e1*(1.0_wp - w)**2
       rest2 = rest1 + e1*w*(2.0_wp - w)
-      f = 2.0_wp*e1/((1.0_wp + e1)*(1.0_wp + e2))
-      ta = rest1/(1.0_wp + e1)
-      tb = rest2/(1.0_wp + e2)
-      less = 2.0_wp*e1/(1.0_wp + e1)
+      ! the quotients by 1 + e1 and 1 + e2 in one, and less = 1 - ta
+      both = over((1.0_wp + e1)*(1.0_wp + e2))
+      f = 2.0_wp*e1*both
+      ta = rest1*(1.0_wp + e2)*both
+      tb = rest2*(1.0_wp + e1)*both
+      less = f*(1.0_wp + e2)
       if (sign < 0.0_wp) then
+         swap = ta
          ta = tb
-         tb = rest1/(1.0_wp + e1)
-         less = 2.0_wp*e2/(1.0_wp + e2)
+         tb = swap
+         less = 2.0_wp*e2*(1.0_wp + e1)*both
       end if
 
-      ! with more = T (tb - ta)
       s = (2.0_wp + y)**2
       t = 4.0_wp*a*b
-      d = y*(16.0_wp*(1.0_wp - q) + y*(24.0_wp - 16.0_wp*q + y*(8.0_wp + y)))/(s + t)
-      more = t*sign*f*w*(2.0_wp - w)
+      d = y*(16.0_wp*(1.0_wp - q) + y*(24.0_wp - 16.0_wp*q + y*(8.0_wp + y)))*over(s + t)
+      ! tb - ta, and T times it
+      both = sign*f*w*(2.0_wp - w)
+      more = t*both
       select case (base)
       case (base_free)
-         ratio = 0.5_wp*((d*less + more)/(d*ta - more) - (d*less*tb + more)/(d*tb + more))
+         ratio = 0.5_wp*((d*less + more)*(d*tb + more) - (d*less*tb + more)*(d*ta - more)) &
+            *over((d*ta - more)*(d*tb + more))
       case (base_sliding)
-         ratio = -(d*less*tb + more)/(d*tb + more)
+         ratio = -(d*less*tb + more)*over(d*tb + more)
       case default
-         kappa = -y*(1.0_wp + q + q*y)/(1.0_wp + a*b)
+         kappa = -y*(1.0_wp + q + q*y)*over(1.0_wp + a*b)
          even = f*((s + 0.25_wp*t**2)*w**2 + 2.0_wp*(1.0_wp - w)*(y + 2.0_wp*kappa)**2)
-         ratio = (d*(more/t - kappa*less) + even)/(kappa*d - even)
+         ratio = (d*(both - kappa*less) + even)*over(kappa*d - even)
       end select
    end function layer_factor
+
+   !> 1/z by one division, for numbers whose squares are in range
+   elemental function over(z)
+      !> Number
+      complex(wp), intent(in) :: z
+      complex(wp) :: over
+
+      over = conjg(z)*(1.0_wp/(real(z, wp)**2 + aimag(z)**2))
+   end function over
 
    !> Square roots with a positive real part, not of numbers on the negative real axis
    pure subroutine roots(x, y, real_part, imaginary_part)
@@ -255,7 +253,7 @@ contains
       complex(wp) :: square
 
       if (abs(real(z, wp)) + abs(aimag(z)) > small) then
-         decay = 1.0_wp - exp(-z)
+         decay = 1.0_wp - exp(-real(z, wp))*cmplx(cos(aimag(z)), -sin(aimag(z)), wp)
       else
          square = 0.25_wp*z**2
          decay = z*exp(-0.5_wp*z)*(1.0_wp + square/6.0_wp*(1.0_wp + square/20.0_wp &

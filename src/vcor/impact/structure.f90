@@ -35,6 +35,8 @@ module vcor_impact_structure
       real(wp), allocatable :: square(:), damping(:), yield(:)
       !> Flexibility C_r of the modes left out [m/N], >= 0
       real(wp) :: residual = 0.0_wp
+      !> Number of modes, the last ones, each of which stands for many
+      integer :: lumped = 0
       !> Material of a viscoelastic structure, otherwise unallocated, and its modulus E_ref that w
       !> is for [Pa]
       class(material_t), allocatable, private :: material
@@ -54,6 +56,8 @@ module vcor_impact_structure
       real(wp), allocatable :: square(:), damping(:), yield(:)
       !> Flexibility of the modes left out [m/N]
       real(wp) :: residual = 0.0_wp
+      !> Number of modes, the last ones, each of which stands for many
+      integer :: lumped = 0
       !> The material: e_0 [-], e_i [-] and l_i [1/s], shape (n); none if it is elastic
       real(wp) :: equilibrium = 1.0_wp
       real(wp), allocatable :: modulus(:), rate(:)
@@ -180,6 +184,7 @@ contains
       vibration%damping = self%damping
       vibration%yield = self%yield
       vibration%residual = self%residual
+      vibration%lumped = self%lumped
       allocate (vibration%modulus(0), vibration%rate(0))
       if (.not. allocated(self%material)) return
       call self%material%exponentials(window, accuracy, terms)

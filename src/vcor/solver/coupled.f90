@@ -9,29 +9,23 @@
 !> differences the mesh of one impact is kept for others.
 module vcor_solver_coupled
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_face, only : face_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
-      col_sphere, col_sphere_velocity, col_time, contact_lasting, contact_resting, &
-      contact_separated, trajectory_t
-   use vcor_kinds, only : unset, wp
-   use vcor_numeric_lapack, only : dgesv
-   use vcor_solver_coupled_kernel, only : kernel_t, mesh_t, new_kernel
-   use vcor_solver_coupled_march, only : course_ended, course_outgrows, course_outlasts, course_t, &
-      march
+   use vcor_impact_trajectory, only : contact_lasting, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_solver_coupled_course, only : course_ended, course_outgrows, course_outlasts, course_t
+   use vcor_solver_coupled_kernel, only : mesh_t
+   use vcor_solver_coupled_march, only : march
+   use vcor_solver_coupled_pair, only : begins_without_bound, distance, limit, pair_t
+   use vcor_solver_coupled_peak, only : peak, peak_t
+   use vcor_solver_coupled_plan, only : first_steps, is_curved, mesh_of, precise, rounded, scale_t, &
+      scales, with_more_hats
+   use vcor_solver_coupled_record, only : record, record_contact
+   use vcor_solver_coupled_store, only : new_store, store_t
    use vcor_solver_type, only : as_text, default_accuracy, solver_settings_t, solver_t
    implicit none
    private
 
    public :: coupled_t, new_coupled
-
-   !> Place of a kernel
-   type :: slot_t
-      type(kernel_t), allocatable :: kernel
-   end type slot_t
-
-   !> Places for kernels, and their largest size in real numbers, 64 MB
-   integer, parameter :: slots = 64, most_numbers = 8000000
 
    !> Mesh of an impact
    type :: plan_t
@@ -46,11 +40,8 @@ module vcor_solver_coupled
    !> The coupled contact
    type, extends(solver_t) :: coupled_t
       private
-      !> Kernels of earlier impacts, shape (slots); allocatable, for gfortran 12 does not finalise
-      !> an array of fixed shape
-      type(slot_t), allocatable :: slot(:)
-      !> Place of the newest kernel
-      integer :: newest = slots
+      !> Kernels of earlier impacts
+      type(store_t) :: store
       !> Operations that the impact has taken so far
       real(wp) :: work = 0.0_wp
       !> Mesh of the impact solved last, and that which all take
@@ -59,27 +50,6 @@ module vcor_solver_coupled
       procedure :: solve
       procedure :: settle
    end type coupled_t
-
-   !> A mesh on which an impact is solved twice
-   type :: pair_t
-      !> The mesh with all steps
-      type(mesh_t) :: mesh
-      !> With half of the steps, and with all
-      type(course_t) :: coarse, fine
-      !> Extrapolated coefficient of restitution of the sphere [-], contact time [s], largest force
-      !> [N] and displacement [m] and their times [s]
-      real(wp) :: cor = 0.0_wp, contact_time = 0.0_wp
-      real(wp) :: max_force = 0.0_wp, time_of_max_force = 0.0_wp
-      real(wp) :: depth = 0.0_wp, time_of_depth = 0.0_wp
-      !> Largest forces of both, not extrapolated [N]
-      real(wp) :: coarse_force = 0.0_wp, fine_force = 0.0_wp
-   end type pair_t
-
-   !> Scales to which window and radius are rounded
-   type :: scale_t
-      !> Time [s] and length [m]
-      real(wp) :: time = 0.0_wp, length = 0.0_wp
-   end type scale_t
 
    !> What is known about the duration and the size of a contact
    type :: search_t
@@ -98,28 +68,20 @@ module vcor_solver_coupled
       procedure :: note
    end type search_t
 
-   !> A largest value
-   type :: peak_t
-      real(wp) :: value = 0.0_wp
-      !> Its time [s]
-      real(wp) :: time = 0.0_wp
-   end type peak_t
-
-   !> Steps of the coarsest mesh, the finest mesh, and its steps
-   integer, parameter :: first_steps = 160, finest = 4, most_steps = first_steps*2**finest
+   !> The finest mesh, and its steps
+   integer, parameter :: finest = 4, most_steps = first_steps*2**finest
    !> Operations that an impact may take, some ten seconds
    real(wp), parameter :: most_work = 4.0e10_wp
    !> Ratio of the errors of two levels at the best
    real(wp), parameter :: best_ratio = 8.0_wp
    !> Steps to the time scale of a contact that resolve it
    real(wp), parameter :: resolved = 8.0_wp
+   !> Relative error of the largest force from which it is computed again, if it comes before this
+   !> part of the contact or of the window
+   real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
    !> Ratios to which window and radius are rounded up, and their margin
    real(wp), parameter :: window_ratio = 2.0_wp**0.125_wp, radius_ratio = 2.0_wp**0.25_wp
    real(wp), parameter :: margin = 1.04_wp
-   !> Exponent of the law of a cone, which has no length
-   real(wp), parameter :: cone = 2.0_wp
-   !> Accuracy of a time scale, so that results do not depend on units
-   real(wp), parameter :: precise = 1.0e-12_wp
 
 contains
 
@@ -130,7 +92,7 @@ contains
       type(solver_settings_t), intent(in) :: settings
 
       self%settings = settings
-      allocate (self%slot(slots))
+      call new_store(self%store)
       if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('coupled')
    end subroutine new_coupled
 
@@ -157,10 +119,6 @@ contains
 
       ! for contact time and largest force, which nothing refines
       real(wp), parameter :: careful = 2.0_wp
-      ! relative error of the largest force from which it is computed again, if it comes early
-      real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
-      ! window of that computation divided by the time of the largest force
-      real(wp), parameter :: longer = 3.0_wp
       type(pair_t) :: before, now
       type(course_t) :: course, wide
       type(search_t) :: search
@@ -239,121 +197,23 @@ contains
       trajectory%cor_sphere_error = cor_error &
          + impact%gravity*now%fine%time_error/impact%velocity
       trajectory%cor_error = trajectory%cor_sphere_error
-      trajectory%max_force_error = distance(before%coarse_force, before%fine_force, &
-         now%coarse_force, now%fine_force)*careful
+      trajectory%max_force_error = careful*max(now%scatter, distance(before%coarse_force, &
+         before%fine_force, now%coarse_force, now%fine_force))
       if (begins_without_bound([before%coarse%force(1), now%coarse%force(1), &
                                 now%fine%force(1)])) trajectory%max_force_error = &
          max(trajectory%max_force_error, now%max_force)
       peak_window = self%kept%peak_window
-      ! at first contact there is none that shorter steps would resolve
+      ! a force that begins without bound has none that shorter steps would resolve
       if (self%kept%level < 0 .and. trajectory%max_force_error > sharp*now%max_force .and. &
-          now%time_of_max_force < early*now%contact_time .and. &
-          now%time_of_max_force > now%fine%dt) peak_window = rounded(longer*now%time_of_max_force, &
-         window_ratio, search%scale%time)
-      if (peak_window > 0.0_wp) call resolve_peak(self, impact, search%radius, peak_window, &
-         trajectory, error)
+          trajectory%max_force_error < now%max_force .and. &
+          now%time_of_max_force < early*now%contact_time) &
+         peak_window = around(now%time_of_max_force, now%fine%dt, search%scale)
+      if (peak_window > 0.0_wp) call resolve_peak(self, impact, search, peak_window, trajectory, &
+         error)
       if (allocated(error)) return
       self%found = plan_t(level, search%window, search%radius, peak_window)
       if (now%contact_time > search%end_time) trajectory%status = contact_lasting
    end subroutine solve
-
-   !> Whether the force of the first step grows without bound as the steps are halved, as that of a
-   !> blunt body on an incompressible plate: what each halving adds does not become less
-   pure function begins_without_bound(force) result(yes)
-      !> Forces of the first step [N], each with steps half as long as before, shape (3)
-      real(wp), intent(in) :: force(:)
-      logical :: yes
-
-      yes = force(2) > force(1) .and. force(3) - force(2) >= force(2) - force(1)
-   end function begins_without_bound
-
-   !> Estimated error of an extrapolated result, the largest of three so that they do not cancel by
-   !> chance: what the level changes, what springs and hats change at equal steps, and what is left
-   !> if the steps have less effect than of second order
-   elemental function distance(long, middle, equal, short)
-      !> Results of the level before with its longer and its shorter steps
-      real(wp), intent(in) :: long, middle
-      !> Results of this level, with steps equal to those shorter ones and with half of them
-      real(wp), intent(in) :: equal, short
-      real(wp) :: distance
-
-      distance = max(abs(limit(equal, short) - limit(long, middle)), abs(equal - middle))
-      associate (before => middle - long, now => short - equal)
-         if (abs(before) > 2.0_wp*abs(now)) then
-            ! the rest of a geometric series less the third that extrapolation takes away
-            distance = max(distance, abs(now)*(now/(before - now) - 1.0_wp/3.0_wp))
-         else
-            distance = max(distance, 2.0_wp/3.0_wp*abs(now))
-         end if
-      end associate
-   end function distance
-
-   !> Mesh of a level: twice the steps of the level before, with more springs and hats. With 192
-   !> springs the edge of a contact on a viscous layer, which ends with a step of the pressure, errs
-   !> by 1e-5. The response of a layer varies over its thickness, which the longest hats resolve
-   pure function mesh_of(level, face, window, radius) result(mesh)
-      !> Level, from 0
-      integer, intent(in) :: level
-      type(face_t), intent(in) :: face
-      !> Duration of all steps [s]
-      real(wp), intent(in) :: window
-      !> Radius of the row of springs [m]
-      real(wp), intent(in) :: radius
-      type(mesh_t) :: mesh
-
-      integer, parameter :: most_for_layer = 24
-
-      mesh = mesh_t(first_steps*2**level, nint(192.0_wp*1.5_wp**level), 8 + 2*level, window, radius)
-      if (face%thickness > 0.0_wp) mesh%hats = mesh%hats &
-         + int(min(3.0_wp*radius/face%thickness, real(most_for_layer, wp)))
-   end function mesh_of
-
-   !> Mesh with half of the steps and twice the elements of hats. By it the coefficient of
-   !> restitution changes by half of the error of the hats if that is of first order, as in fast
-   !> impacts, where the edge of the contact runs as fast as the waves, and by three quarters if of
-   !> second order
-   pure function with_more_hats(mesh) result(wide)
-      type(mesh_t), intent(in) :: mesh
-      type(mesh_t) :: wide
-
-      wide = mesh
-      wide%steps = mesh%steps/2
-      wide%hats = 2*mesh%hats - 1
-   end function with_more_hats
-
-   !> Scales of an impact that do not depend on its velocity, so that a sweep of velocities shares
-   !> kernels, and not on units: the length at which the body is as deep as it is wide, and the time
-   !> in which the contact would push the body as far. A cone has no such length but that of the
-   !> layer, or else of its own impact
-   pure function scales(impact) result(scale)
-      type(impact_t), intent(in) :: impact
-      type(scale_t) :: scale
-
-      ! the map contracts by half of the exponent of a power law at least
-      integer, parameter :: iterations = 100
-      real(wp), parameter :: same = 1.0e-13_wp
-      real(wp) :: guess, stiffness
-      integer :: i
-
-      scale%time = impact%time_scale(precise)
-      if (abs(impact%law%start_exponent - cone) > 0.0_wp) then
-         scale%length = impact%factor**(1.0_wp/(cone - impact%law%start_exponent))
-      else if (impact%face%thickness > 0.0_wp) then
-         scale%length = impact%face%thickness
-      else
-         scale%length = scale%time*impact%speed_scale(scale%time)
-         return
-      end if
-      ! from no time of its own, for neighbours share it to the last bit
-      guess = 1.0_wp
-      do i = 1, iterations
-         stiffness = (impact%kernel_integral(guess) + impact%kernel_viscosity())/guess &
-            *scale%length**(impact%law%start_exponent - 1.0_wp)
-         scale%time = sqrt(impact%mass/stiffness)
-         if (abs(scale%time - guess) <= same*guess) exit
-         guess = scale%time
-      end do
-   end function scales
 
    !> Note that the contact outlasts a time
    pure subroutine note(self, time, dt)
@@ -428,27 +288,6 @@ contains
          *radius_ratio**search%attempt
    end subroutine scout
 
-   !> Whether the contact has no fixed radius, which only that of a flat punch has
-   pure function is_curved(impact)
-      type(impact_t), intent(in) :: impact
-      logical :: is_curved
-
-      is_curved = impact%law%start_exponent > 1.0_wp
-   end function is_curved
-
-   !> Round up to a scale times a power of a ratio
-   pure function rounded(value, ratio, scale)
-      !> Number, > 0
-      real(wp), intent(in) :: value
-      !> Ratio, > 1
-      real(wp), intent(in) :: ratio
-      !> Scale, > 0
-      real(wp), intent(in) :: scale
-      real(wp) :: rounded
-
-      rounded = scale*ratio**ceiling(log(value/scale)/log(ratio))
-   end function rounded
-
    !> March on a mesh
    subroutine run(self, impact, mesh, course, error)
       type(coupled_t), intent(inout) :: self
@@ -467,39 +306,10 @@ contains
             //'sphere; otherwise give a larger solver.accuracy')
          return
       end if
-      do i = 1, slots
-         if (.not. allocated(self%slot(i)%kernel)) cycle
-         if (self%slot(i)%kernel%is_for(impact%face, mesh)) exit
-      end do
-      if (i > slots) then
-         call make_room(self)
-         i = self%newest
-         allocate (self%slot(i)%kernel)
-         call new_kernel(self%slot(i)%kernel, impact%face, mesh, error)
-         if (allocated(error)) return
-      end if
-      call march(impact, self%slot(i)%kernel, course, error)
+      call self%store%find(impact%face, mesh, i, error)
+      if (allocated(error)) return
+      call march(impact, self%store%slot(i)%kernel, course, error)
    end subroutine run
-
-   !> Make room for a kernel: delete the oldest
-   pure subroutine make_room(self)
-      type(coupled_t), intent(inout) :: self
-
-      integer :: total, i, oldest
-
-      total = 0
-      do i = 1, slots
-         if (allocated(self%slot(i)%kernel)) total = total + self%slot(i)%kernel%numbers()
-      end do
-      self%newest = 1 + modulo(self%newest, slots)
-      do i = 0, slots - 1
-         oldest = 1 + modulo(self%newest + i - 1, slots)
-         if (.not. allocated(self%slot(oldest)%kernel)) cycle
-         if (i > 0 .and. total <= most_numbers) exit
-         total = total - self%slot(oldest)%kernel%numbers()
-         deallocate (self%slot(oldest)%kernel)
-      end do
-   end subroutine make_room
 
    !> March on a mesh with half of its steps and with all, and extrapolate to none: the error is of
    !> second order
@@ -511,7 +321,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(mesh_t) :: half
-      type(peak_t) :: one, two
 
       pair%mesh = mesh
       half = mesh
@@ -520,220 +329,68 @@ contains
       if (allocated(error) .or. pair%coarse%status /= course_ended) return
       call run(self, impact, mesh, pair%fine, error)
       if (allocated(error) .or. pair%fine%status /= course_ended) return
-      associate (a => pair%coarse, b => pair%fine)
-         pair%contact_time = limit(a%contact_time, b%contact_time)
-         pair%cor = limit(a%cor(impact), b%cor(impact))
-         one = peak(a%force(0:a%steps), a%dt)
-         two = peak(b%force(0:b%steps), b%dt)
-         pair%coarse_force = one%value
-         pair%fine_force = two%value
-         pair%max_force = limit(one%value, two%value)
-         pair%time_of_max_force = limit(one%time, two%time)
-         one = peak(a%z(0:a%steps), a%dt)
-         two = peak(b%z(0:b%steps), b%dt)
-         pair%depth = limit(one%value, two%value)
-         pair%time_of_depth = limit(one%time, two%time)
-      end associate
+      call pair%extrapolate(impact)
    end subroutine solve_pair
 
+   !> Window in which an early largest force is resolved
+   pure function around(time, dt, scale) result(window)
+      !> Time of the force, and the steps that have shown it [s]
+      real(wp), intent(in) :: time, dt
+      type(scale_t), intent(in) :: scale
+      !> Window [s]
+      real(wp) :: window
+
+      ! the force is then in the middle of it, or in the first step resolved by fifty
+      real(wp), parameter :: longer = 3.0_wp
+
+      window = rounded(longer*max(time, dt), window_ratio, scale%time)
+   end function around
+
    !> Compute the largest force again in a shorter window, as on a light plate the contact lasts
-   !> long after it. What comes later does not change it
-   subroutine resolve_peak(self, impact, radius, window, trajectory, error)
+   !> long after it, and in a shorter one if it comes early in that too. What comes later does not
+   !> change it
+   subroutine resolve_peak(self, impact, search, window, trajectory, error)
       type(coupled_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
-      !> Radius of the row of springs [m]
-      real(wp), intent(in) :: radius
-      !> Duration of all steps [s]
-      real(wp), intent(in) :: window
+      !> What has been found about the contact
+      type(search_t), intent(in) :: search
+      !> Duration of all steps [s], on return of the last computation
+      real(wp), intent(inout) :: window
       !> The course of the impact, recorded
       type(trajectory_t), intent(inout) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! windows, each a hundredth of the one before at the least
+      integer, parameter :: most = 4
       type(peak_t) :: top(2)
       type(course_t) :: course
       type(mesh_t) :: mesh
-      real(wp) :: force(0:1)
-      integer :: level, i
+      real(wp) :: force(0:1), first(0:2)
+      integer :: level, i, round
 
-      do level = 0, 1
-         mesh = mesh_of(level, impact%face, window, radius)
-         do i = 2, 1, -1
-            call run(self, impact, mesh, course, error)
-            if (allocated(error) .or. course%status == course_outgrows) return
-            top(i) = peak(course%force(0:course%steps), course%dt)
-            mesh%steps = mesh%steps/2
+      do round = 1, most
+         do level = 0, 1
+            mesh = mesh_of(level, impact%face, window, search%radius)
+            do i = 2, 1, -1
+               call run(self, impact, mesh, course, error)
+               if (allocated(error) .or. course%status == course_outgrows) return
+               top(i) = peak(course%force(0:course%steps), course%dt)
+               first(level + i - 1) = course%force(1)
+               mesh%steps = mesh%steps/2
+            end do
+            force(level) = limit(top(1)%value, top(2)%value)
          end do
-         force(level) = limit(top(1)%value, top(2)%value)
+         trajectory%max_force = force(1)
+         trajectory%max_force_error = max(abs(force(1) - force(0)), top(2)%scatter)
+         trajectory%time_of_max_force = limit(top(1)%time, top(2)%time)
+         if (begins_without_bound(first)) trajectory%max_force_error = &
+            max(trajectory%max_force_error, trajectory%max_force)
+         if (self%kept%level >= 0 .or. trajectory%max_force_error <= sharp*force(1) .or. &
+             trajectory%max_force_error >= force(1) .or. &
+             trajectory%time_of_max_force >= early*window) exit
+         window = around(trajectory%time_of_max_force, window/real(2*mesh%steps, wp), search%scale)
       end do
-      trajectory%max_force = force(1)
-      trajectory%max_force_error = abs(force(1) - force(0))
-      trajectory%time_of_max_force = limit(top(1)%time, top(2)%time)
    end subroutine resolve_peak
-
-   !> Extrapolate to steps of no length
-   elemental function limit(coarse, fine)
-      !> Value with some steps
-      real(wp), intent(in) :: coarse
-      !> Value with twice as many
-      real(wp), intent(in) :: fine
-      real(wp) :: limit
-
-      limit = (4.0_wp*fine - coarse)/3.0_wp
-   end function limit
-
-   !> Largest value of a series: the top of a polynomial that is fitted around it with weights that
-   !> fall to 0 at its ends, so that the top follows the values steadily
-   pure function peak(value, dt)
-      !> Values at equal steps, shape (0:)
-      real(wp), intent(in) :: value(0:)
-      !> Step [s]
-      real(wp), intent(in) :: dt
-      type(peak_t) :: peak
-
-      ! part of the largest value down to which it is fitted: the top of a sine is within 1e-7
-      real(wp), parameter :: high = 0.95_wp
-      integer, parameter :: degree = 4, iterations = 8
-      real(wp) :: c(0:degree), products(0:degree, 0:degree), power(0:degree), x, weight, bend
-      integer :: first, middle, last, most, i, info, pivots(degree + 1)
-
-      middle = maxloc(value, 1) - 1
-      peak%value = value(middle)
-      peak%time = dt*real(middle, wp)
-      do first = middle, 1, -1
-         if (value(first - 1) <= high*peak%value) exit
-      end do
-      do last = middle, ubound(value, 1) - 1
-         if (value(last + 1) <= high*peak%value) exit
-      end do
-      if (first == middle .or. last == middle) return
-      most = min(degree, 2*((last - first)/2))
-      c = 0.0_wp
-      products = 0.0_wp
-      do i = first, last
-         weight = value(i)/peak%value - high
-         power = (real(i - middle, wp)/real(last - first, wp))**[0, 1, 2, 3, 4]
-         c(:most) = c(:most) + weight*value(i)*power(:most)
-         products(:most, :most) = products(:most, :most) + weight &
-            *spread(power(:most), 1, most + 1)*spread(power(:most), 2, most + 1)
-      end do
-      call dgesv(most + 1, 1, products, degree + 1, pivots, c, degree + 1, info)
-      if (info /= 0) return
-      x = 0.0_wp
-      do i = 1, iterations
-         bend = 2.0_wp*c(2) + x*(6.0_wp*c(3) + x*12.0_wp*c(4))
-         if (.not. (bend < 0.0_wp .and. abs(x) < 1.0_wp)) return
-         x = x - (c(1) + x*(2.0_wp*c(2) + x*(3.0_wp*c(3) + x*4.0_wp*c(4))))/bend
-      end do
-      peak%value = c(0) + x*(c(1) + x*(c(2) + x*(c(3) + x*c(4))))
-      peak%time = dt*(real(middle, wp) + x*real(last - first, wp))
-   end function peak
-
-   !> Record the course of a contact that has ended, extrapolated at the nodes of the longer steps
-   subroutine record(pair, impact, trajectory)
-      type(pair_t), intent(in) :: pair
-      type(impact_t), intent(in) :: impact
-      type(trajectory_t), intent(inout) :: trajectory
-
-      integer :: i, n
-
-      associate (a => pair%coarse, b => pair%fine)
-         n = count([(real(i, wp)*a%dt < pair%contact_time, i=1, min(a%steps - 1, (b%steps - 1)/2))])
-         call fill(trajectory, impact, a%dt, limit(a%force(0:n), b%force(0:2*n:2)), &
-            limit(a%z(0:n), b%z(0:2*n:2)), limit(a%velocity(0:n), b%velocity(0:2*n:2)), &
-            b%radius(0:2*n:2))
-         trajectory%steps = a%steps + b%steps
-         trajectory%tension = b%tension
-         trajectory%radius(n + 1) = 0.0_wp
-         ! the end, with the impulse of the whole contact
-         n = n + 1
-         trajectory%last = n
-         trajectory%final = n
-         associate (end => trajectory%state(:, n))
-            end = unset
-            end(col_time) = pair%contact_time
-            end(col_force) = 0.0_wp
-            end(col_sphere_velocity) = -pair%cor*impact%velocity
-            end(col_impulse) = impact%mass*(impact%free_velocity(pair%contact_time) &
-               + pair%cor*impact%velocity)
-            end(col_sphere) = limit(a%z(a%steps), b%z(b%steps))
-            end(col_indentation) = end(col_sphere)
-         end associate
-      end associate
-      call share_impulse(trajectory)
-      trajectory%status = contact_separated
-      trajectory%max_indentation = pair%depth
-      trajectory%time_of_max_indentation = pair%time_of_depth
-      trajectory%max_force = pair%max_force
-      trajectory%time_of_max_force = pair%time_of_max_force
-   end subroutine record
-
-   !> Record the course of a contact that has not ended
-   subroutine record_contact(course, impact, trajectory)
-      type(course_t), intent(in) :: course
-      type(impact_t), intent(in) :: impact
-      type(trajectory_t), intent(inout) :: trajectory
-
-      type(peak_t) :: top
-
-      associate (n => course%steps)
-         call fill(trajectory, impact, course%dt, course%force(0:n), course%z(0:n), &
-            course%velocity(0:n), course%radius(0:n))
-         trajectory%steps = n
-         trajectory%last = n
-         trajectory%final = n
-         trajectory%status = contact_lasting
-         if (course%rests(impact%mass*impact%gravity)) trajectory%status = contact_resting
-         top = peak(course%force(0:n), course%dt)
-         trajectory%max_force = top%value
-         trajectory%time_of_max_force = top%time
-         top = peak(course%z(0:n), course%dt)
-         trajectory%max_indentation = top%value
-         trajectory%time_of_max_indentation = top%time
-      end associate
-      call share_impulse(trajectory)
-   end subroutine record_contact
-
-   !> Record equal steps. The plate has no displacement apart from the indentation: both are the
-   !> approach of the sphere to the undisturbed face
-   subroutine fill(trajectory, impact, dt, force, z, velocity, radius)
-      type(trajectory_t), intent(inout) :: trajectory
-      type(impact_t), intent(in) :: impact
-      !> Step [s]
-      real(wp), intent(in) :: dt
-      !> Force [N], displacement [m] and velocity of the sphere [m/s], shape (0:n)
-      real(wp), intent(in) :: force(0:), z(0:), velocity(0:)
-      !> Contact radius [m], same shape
-      real(wp), intent(in) :: radius(0:)
-
-      integer :: i, n
-
-      n = ubound(force, 1)
-      call trajectory%reserve(n + 1)
-      trajectory%state = unset
-      do i = 0, n
-         trajectory%state(col_time, i) = real(i, wp)*dt
-         trajectory%state(col_force, i) = max(0.0_wp, force(i))
-         trajectory%state(col_sphere, i) = z(i)
-         trajectory%state(col_sphere_velocity, i) = velocity(i)
-         trajectory%state(col_impulse, i) = impact%mass &
-            *(impact%free_velocity(real(i, wp)*dt) - velocity(i))
-      end do
-      trajectory%state(col_indentation, :) = trajectory%state(col_sphere, :)
-      allocate (trajectory%radius(0:n + 1), source=unset)
-      trajectory%radius(0:n) = radius
-   end subroutine fill
-
-   !> Share the impulse of each step among its ends. Forces would do worse: they may begin as the
-   !> square root of time
-   pure subroutine share_impulse(trajectory)
-      type(trajectory_t), intent(inout) :: trajectory
-
-      associate (n => trajectory%last, impulse => trajectory%state(col_impulse, :))
-         trajectory%share(0:n - 1) = 0.5_wp*(impulse(2:n + 1) - impulse(1:n))
-         trajectory%share(n) = 0.0_wp
-         trajectory%share(1:n) = trajectory%share(1:n) + 0.5_wp*(impulse(2:n + 1) - impulse(1:n))
-      end associate
-   end subroutine share_impulse
 
    !> Number of steps of a level as text of fixed length, for threads
    pure function steps_text(level) result(text)

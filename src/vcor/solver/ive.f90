@@ -145,10 +145,14 @@ contains
       trajectory%kernel_error = sums%contact%error
       if (trajectory%status /= contact_separated) return
       of_sums = errors_of_sums(impact, sums, trajectory)
-      trajectory%cor_error = of_march(of_cor) + of_sums(of_cor)
-      trajectory%cor_sphere_error = of_march(of_cor_sphere) + of_sums(of_cor_sphere)
-      trajectory%contact_time_error = of_march(of_time) + of_sums(of_time)
-      trajectory%max_force_error = of_march(of_force) + of_sums(of_force)
+      ! with what the ringing of a structure adds
+      trajectory%cor_error = trajectory%cor_error + of_march(of_cor) + of_sums(of_cor)
+      trajectory%cor_sphere_error = trajectory%cor_sphere_error + of_march(of_cor_sphere) &
+         + of_sums(of_cor_sphere)
+      trajectory%contact_time_error = trajectory%contact_time_error + of_march(of_time) &
+         + of_sums(of_time)
+      trajectory%max_force_error = trajectory%max_force_error + of_march(of_force) &
+         + of_sums(of_force)
       worst = largest(trajectory, of_march + of_sums)
       if (largest(trajectory, of_sums) > 0.5_wp*worst) then
          effort%sums = 0.1_wp*effort%sums*min(1.0_wp, self%accuracy/worst)

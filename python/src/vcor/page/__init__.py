@@ -1,9 +1,10 @@
-"""A page for the browser: one file with sliders, from a sweep made beforehand.
+"""A page for the browser: live, or as one file with a sweep made beforehand.
 
-`make` makes it, `vcor page` writes it. The page needs neither Python nor a network: it looks up
-and interpolates what the library has computed.
+`live` serves one from this process, as `vcor page` and `case.page()` do; `make` makes a file that
+needs neither Python nor a network: it looks up and interpolates what the library has computed.
 """
 
 from .document import Page, make
+from .server import Live, live
 
-__all__ = ["Page", "make"]
+__all__ = ["Live", "Page", "live", "make"]

@@ -31,9 +31,9 @@ MOST_BYTES = 2_000_000
 #: Points along an axis: those of a cubic polynomial, and what a curve of a page can show
 LEAST_POINTS, MOST_POINTS = 4, 257
 #: Patterns and widths of the curve by validity: told apart without colour
-_LINES = {"good": ("solid", 3.0), "caution": ("dashed", 2.5), "outside": ("dotted", 2.5)}
+LINES = {"good": ("solid", 3.0), "caution": ("dashed", 2.5), "outside": ("dotted", 2.5)}
 #: What a level means; docs/validity.md
-_VERDICTS = {
+VERDICTS = {
     "good": "The model holds: no measure reaches its first threshold.",
     "caution": "Some numbers are off by a few per cent",
     "outside": "This is not an impact that the model describes",
@@ -200,7 +200,7 @@ def _document(case: Case, axes: list[Axis], tables: list[Table], body: str) -> s
             for one in axes
         ],
         "causes": [[name, columns[name].meaning if name in columns else ""] for name in causes],
-        "verdicts": _VERDICTS,
+        "verdicts": VERDICTS,
         "tables": [_packed(one) for one in tables],
         "figure": json_item(_figure(axes[0])),
     }  # fmt: skip
@@ -241,8 +241,8 @@ def _figure(axis: Axis) -> Any:
         tools="pan,box_zoom,wheel_zoom,reset,save", toolbar_location="above", name="figure",
     )  # fmt: skip
     made.toolbar.logo = None
-    curve = ColumnDataSource({"x": [], **{level: [] for level in _LINES}}, name="curve")
-    for level, (dash, width) in _LINES.items():
+    curve = ColumnDataSource({"x": [], **{level: [] for level in LINES}}, name="curve")
+    for level, (dash, width) in LINES.items():
         made.line("x", level, source=curve, line_dash=dash, line_width=width, name=level)
     points = ColumnDataSource({"x": [], "e": [], "low": [], "high": []}, name="points")
     made.segment("x", "low", "x", "high", source=points, line_width=1.5, name="bars")

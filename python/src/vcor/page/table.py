@@ -69,7 +69,7 @@ class Table:
     states: list[tuple[str, ...]]
     #: The case as namelists with every default
     case: str = ""
-    #: Height of the drop, as `_drop` has it
+    #: Height of the drop, as `drop_of` has it
     drop: dict[str, float] = field(default_factory=dict)
     #: Largest error of interpolation at fresh impacts; nan if there is none with a value
     error: float = math.nan
@@ -183,7 +183,7 @@ def solve(
         name, counts, cor.astype(np.float32),
         np.array([states.index(one) for one in known], dtype=np.uint8),
         np.array([causes.index(one) for one in data.validity_cause.values.ravel()], dtype=np.uint8),
-        states, case=data.attrs["case"], drop=_drop(case, axes), fresh=fresh,
+        states, case=data.attrs["case"], drop=drop_of(case, axes), fresh=fresh,
         lost="".join(lost).removeprefix(f"{case.name}: "),
         beyond=data.attrs.get("beyond_data", "").splitlines(),
     )  # fmt: skip
@@ -235,7 +235,7 @@ def _announce(what: str, impacts: int, one: float) -> None:
                       "smaller number takes less", stacklevel=2)  # fmt: skip
 
 
-def _drop(case: Case, axes: Sequence[Axis]) -> dict[str, float]:
+def drop_of(case: Case, axes: Sequence[Axis]) -> dict[str, float]:
     """Height of the drop: its `factor` [SI], times a power of the SI number of an axis, if any.
 
     It is the drop height where the case has one, else v^2/(2 g); empty if g varies.

@@ -15,11 +15,12 @@
 !>   the edge.
 module vcor_solver_coupled_edge
    use vcor_kinds, only : wp
+   use vcor_solver_coupled_past, only : find_dents
    use vcor_solver_coupled_row, only : row_t
    implicit none
    private
 
-   public :: edge_t, find_dents
+   public :: edge_t
 
    !> Corners of the rim: every second goes when there are more, as the steps then are much shorter
    !> than the time in which the edge passes a spring
@@ -114,7 +115,8 @@ contains
       self%grows = .false.
       i = findloc(pushes, .true., dim=1, back=.true.)
       if (i == 0) return
-      associate (x => row%x, n => self%power, weight => row%weight(i), hat => row%hat(i))
+      associate (x => row%x, n => self%power, weight => row%weight(i), hat => row%hat(i), &
+                 right => row%right(i))
          self%radius = x(i)
          if (i == size(x)) return
          q = compression/local
@@ -147,7 +149,7 @@ contains
             if (q(i) < fall*rise) self%radius = (x(i)**n + q(i)/fall)**(1.0_wp/n)
             call chain%insert(self%radius, q(i) - fall*(self%radius**n - x(i)**n))
          end if
-         missing(hat:hat + 1) = row%value(:, i)*(2.0_wp*chain%integral(0.5_wp*(x(first) &
+         missing(hat:hat + 1) = [1.0_wp - right, right]*(2.0_wp*chain%integral(0.5_wp*(x(first) &
             + x(first + 1) - weight)) - weight*sum(q(first:i)))
       end associate
    end subroutine find
@@ -231,31 +233,5 @@ contains
          end do
       end associate
    end function integral
-
-   !> Dents that earlier pressures have left, four steps at a time, as the sum would otherwise be
-   !> loaded and stored for each
-   pure subroutine find_dents(dent, pressure, local)
-      !> Dents [m]
-      real(wp), contiguous, intent(out) :: dent(:)
-      !> Pressures of earlier steps [N/m], shape (>= size(dent), >= steps)
-      real(wp), contiguous, intent(in) :: pressure(:, :)
-      !> Weights of the springs from lag 0 to that of the first step, shape (0:steps)
-      real(wp), intent(in) :: local(0:)
-
-      integer :: i, n, steps
-
-      n = size(dent)
-      steps = ubound(local, 1)
-      dent = 0.0_wp
-      do i = 1, steps - 3, 4
-         dent = dent + (local(steps + 1 - i)*pressure(:n, i) &
-            + local(steps - i)*pressure(:n, i + 1) &
-            + local(steps - 1 - i)*pressure(:n, i + 2) &
-            + local(steps - 2 - i)*pressure(:n, i + 3))
-      end do
-      do i = steps - modulo(steps, 4) + 1, steps
-         dent = dent + local(steps + 1 - i)*pressure(:n, i)
-      end do
-   end subroutine find_dents
 
 end module vcor_solver_coupled_edge

@@ -1,16 +1,16 @@
 !> Response of a face as weights of convolution quadrature on a row of springs: a local part on the
 !> springs, 1/Q', and a smooth part on the hats, (L - 1)/Q' and what moves as a whole
 !>
-!> No mass, shape, velocity or gravity is in it, so that impacts share it. Quadrature in k is by
-!> panels of Gauss nodes, one grid for all frequencies: a node that depends on the frequency would
-!> make an error that is not smooth in it, which the weights of late steps amplify.
+!> No mass, shape, velocity or gravity is in it, so that impacts share it.
 module vcor_solver_coupled_kernel
    use vcor_error, only : error_t
-   use vcor_impact_face, only : base_free, face_t
+   use vcor_impact_face, only : face_t
    use vcor_kinds, only : pi, wp
-   use vcor_numeric_quadrature, only : gauss_nodes
+   use vcor_numeric_quadrature, only : gauss_nodes, legendre
    use vcor_solver_coupled_row, only : new_row, row_t, transforms
    use vcor_solver_coupled_rule, only : nodes, weights
+   use vcor_solver_coupled_spectrum, only : moduli_t, new_moduli, new_spectrum, panel_nodes, &
+      spectrum_t
    implicit none
    private
 
@@ -47,8 +47,6 @@ module vcor_solver_coupled_kernel
       integer :: beside = 2
       !> Part of the striker in the local compliance
       real(wp) :: striker_share = 0.0_wp
-      !> Poisson's ratio of the plate
-      real(wp) :: poisson_ratio = 0.0_wp
       !> Whether the springs have a memory: more than their first weight counts
       logical :: remembers = .false.
       !> Whether hats act on each other
@@ -56,13 +54,10 @@ module vcor_solver_coupled_kernel
       !> First weights of the hats, shape (hats, hats) [m/N]
       real(wp), allocatable :: now(:, :)
       !> Later weights of the hats [m/N], that of lag n from hat j to hat i at
-      !> (j + hats (steps - 1 - n), i), shape (hats (steps - 1), hats)
+      !> (i, j + hats (steps - 1 - n)), shape (hats, hats (steps - 1))
       real(wp), allocatable :: later(:, :)
-      !> What the face is: its base, Poisson's ratio, thickness and moduli at all frequencies
-      integer, private :: base = -1
-      logical, private :: has_waves = .false.
-      real(wp), private :: thickness = 0.0_wp
-      complex(wp), allocatable, private :: modulus(:), compliance(:), p(:)
+      !> What the face is at the frequencies of the mesh
+      type(moduli_t) :: moduli
    contains
       procedure :: is_for
       procedure :: numbers
@@ -86,26 +81,15 @@ contains
    end function operations
 
    !> Whether the kernel is that of a face on a mesh
-   function is_for(self, face, mesh) result(yes)
+   pure function is_for(self, face, mesh) result(yes)
       class(kernel_t), intent(in) :: self
       type(face_t), intent(in) :: face
       type(mesh_t), intent(in) :: mesh
       logical :: yes
 
-      complex(wp) :: s(0:mesh%steps/2)
-
-      yes = self%mesh%steps == mesh%steps .and. self%mesh%springs == mesh%springs &
-         .and. self%mesh%hats == mesh%hats .and. self%base == face%base &
-         .and. (self%has_waves .eqv. face%has_waves) &
-         .and. .not. abs(self%mesh%window - mesh%window) > 0.0_wp &
-         .and. .not. abs(self%mesh%radius - mesh%radius) > 0.0_wp &
-         .and. .not. abs(self%poisson_ratio - face%poisson_ratio()) > 0.0_wp &
-         .and. .not. abs(self%thickness - face%thickness) > 0.0_wp
-      if (.not. yes) return
-      s = nodes(mesh%steps, mesh%window/real(mesh%steps, wp))
-      yes = all(abs(self%modulus - face%plate_modulus(s)) <= 0.0_wp) &
-         .and. all(abs(self%compliance - face%local_compliance(s)) <= 0.0_wp) &
-         .and. all(abs(self%p - face%per_shear_speed(s)) <= 0.0_wp)
+      yes = self%mesh%springs == mesh%springs .and. self%mesh%hats == mesh%hats &
+         .and. .not. abs(self%mesh%radius - mesh%radius) > 0.0_wp
+      if (yes) yes = self%moduli%is_for(face, mesh%steps, mesh%window)
    end function is_for
 
    !> Laplace variable of a step, 1/dt
@@ -126,97 +110,116 @@ contains
    end function numbers
 
    !> Build the kernel of a face on a mesh
-   subroutine new_kernel(self, face, mesh, error)
+   subroutine new_kernel(self, face, mesh, spectrum, error)
       type(kernel_t), intent(out) :: self
       type(face_t), intent(in) :: face
       type(mesh_t), intent(in) :: mesh
+      !> Response of the face, computed anew unless it suits the mesh
+      type(spectrum_t), intent(inout) :: spectrum
       !> Error of code `error_internal`
       type(error_t), allocatable, intent(out) :: error
 
       ! the part of the first weight from which the springs are elastic
       real(wp), parameter :: negligible = 1.0e-7_wp
-      complex(wp) :: s(0:mesh%steps/2)
       real(wp) :: found(1, 0:mesh%steps - 1)
 
       self%mesh = mesh
-      self%base = face%base
-      self%has_waves = face%has_waves
-      self%poisson_ratio = face%poisson_ratio()
-      self%thickness = face%thickness
-      s = nodes(mesh%steps, mesh%window/real(mesh%steps, wp))
-      self%modulus = face%plate_modulus(s)
-      self%compliance = face%local_compliance(s)
-      self%p = face%per_shear_speed(s)
+      call new_moduli(self%moduli, face, mesh%steps, mesh%window)
       call new_row(self%row, mesh%radius, mesh%hats, mesh%springs)
-      found = weights(reshape(self%compliance, [1, size(s)]))
+      found = weights(reshape(self%moduli%compliance, [1, size(self%moduli%compliance)]))
       allocate (self%local(0:mesh%steps - 1), source=found(1, :))
       self%remembers = any(abs(self%local(1:)) > negligible*self%local(0))
-      call add_response(self, face, s, error)
+      call add_response(self, face, spectrum, error)
    end subroutine new_kernel
 
    !> Weights of the hats: with g(k), the cosine transforms of the functions dual to the hats, the
    !> response of hat j to hat i is
    !>
    !>     C_ij(s) = (1/(pi Q'(s))) int_0^oo (L(k, s) - 1) g_i(k) g_j(k) dk + c(s)
-   subroutine add_response(self, face, s, error)
+   subroutine add_response(self, face, spectrum, error)
       type(kernel_t), intent(inout) :: self
       type(face_t), intent(in) :: face
-      !> Laplace variables [1/s], shape (0:steps/2)
-      complex(wp), intent(in) :: s(0:)
+      type(spectrum_t), intent(inout) :: spectrum
       type(error_t), allocatable, intent(out) :: error
 
-      complex(wp), allocatable :: response(:, :), excess(:, :), passing(:)
-      real(wp), allocatable :: k(:), share(:), dual(:, :), products(:, :), weight(:, :)
-      integer :: hats, steps, i, j, l, n
+      ! up to which a mesh with twice the elements of hats needs the spectrum, 2^1.5, and more
+      real(wp), parameter :: shared = 3.0_wp
+      complex(wp) :: response(pair(self%mesh%hats, self%mesh%hats), 0:self%mesh%steps/2)
+      complex(wp) :: drift(0:self%mesh%steps/2)
+      real(wp), allocatable :: products(:, :)
+      real(wp) :: last
+      integer :: l
 
-      hats = self%mesh%hats
-      steps = self%mesh%steps
-      allocate (self%now(hats, hats), source=0.0_wp)
-      allocate (response(pair(hats, hats), 0:steps/2), source=(0.0_wp, 0.0_wp))
+      response = 0.0_wp
       if (face%has_response()) then
-         passing = passing_nodes(self, face)
-         call wavenumbers(face, [self%p, passing], self%mesh%radius, self%row%node(2), k, share)
-         share = share/pi
-         allocate (dual(hats, size(k)), products(size(response, 1), size(k)), &
-            excess(size(k), 0:steps/2))
-         call transforms(self%row%node, k, dual, error)
+         last = last_wavenumber(self%row)
+         if (.not. spectrum%suits(self%moduli, self%mesh%radius, last)) &
+            call new_spectrum(spectrum, face, self%moduli, self%mesh%radius, shared*last)
+         call find_products(self%row, spectrum, last, products, error)
          if (allocated(error)) return
-         do n = 1, size(k)
-            do j = 1, hats
-               products(pair(1, j):pair(j, j), n) = share(n)*dual(j, n)*dual(:j, n)
-            end do
+         if (face%has_waves) then
+            response = integrals(products, spectrum%excess)
+            call add_passing(self, face, products, spectrum%passing)
+         else
+            response = spread(reshape(integrals(products, spectrum%excess), &
+               [size(products, 1)]), 2, size(response, 2))
+         end if
+         do l = 0, ubound(response, 2)
+            response(:, l) = response(:, l)/self%moduli%modulus(l)
          end do
-         do l = 0, steps/2
-            if (l == 0 .or. face%has_waves) then
-               call face%response(k, self%p(l + 1), excess(:, l))
-            else
-               excess(:, l) = excess(:, 0)
-            end if
-         end do
-         response = cmplx(matmul(products, real(excess, wp)), matmul(products, aimag(excess)), wp)
-         do l = 0, steps/2
-            response(:, l) = response(:, l)/self%modulus(l + 1)
-         end do
-         if (face%has_waves) call add_passing(self, face, k, share, dual, passing)
       end if
-      do l = 0, steps/2
-         response(:, l) = response(:, l) + face%drift(s(l))
+      drift = face%drift(nodes(self%mesh%steps, 1.0_wp/self%rate()))
+      do l = 0, ubound(response, 2)
+         response(:, l) = response(:, l) + drift(l)
       end do
-      self%has_response = any(abs(response) > 0.0_wp)
-      if (.not. self%has_response) return
-      allocate (weight(size(response, 1), 0:steps - 1), self%later(hats*(steps - 1), hats))
-      weight = weights(response)
-      do j = 1, hats
-         do i = 1, hats
-            self%now(i, j) = weight(pair(i, j), 0)
-         end do
-         do n = 1, steps - 1
+      call add_weights(self, response)
+   end subroutine add_response
+
+   !> Integrals over the wavenumbers, sum products L
+   pure function integrals(products, excess) result(response)
+      !> Products of hats, shape (pairs, nodes)
+      real(wp), intent(in) :: products(:, :)
+      !> L - 1, shape (>= nodes, frequencies)
+      complex(wp), intent(in) :: excess(:, :)
+      complex(wp) :: response(size(products, 1), size(excess, 2))
+
+      real(wp) :: part(size(products, 2), size(excess, 2))
+      real(wp), dimension(size(products, 1), size(excess, 2)) :: even, odd
+
+      part = real(excess(:size(products, 2), :), wp)
+      even = matmul(products, part)
+      part = aimag(excess(:size(products, 2), :))
+      odd = matmul(products, part)
+      response = cmplx(even, odd, wp)
+   end function integrals
+
+   !> Unpack the weights of the hats
+   pure subroutine add_weights(self, response)
+      type(kernel_t), intent(inout) :: self
+      !> Response at the frequencies, shape (pairs, 0:steps/2)
+      complex(wp), intent(in) :: response(:, 0:)
+
+      real(wp), allocatable :: weight(:, :)
+      integer :: i, j, n
+
+      associate (hats => self%mesh%hats, steps => self%mesh%steps)
+         allocate (self%now(hats, hats), source=0.0_wp)
+         self%has_response = any(abs(response) > 0.0_wp)
+         if (.not. self%has_response) return
+         allocate (weight(size(response, 1), 0:steps - 1), self%later(hats, hats*(steps - 1)))
+         weight = weights(response)
+         do j = 1, hats
             do i = 1, hats
-               self%later(i + hats*(steps - 1 - n), j) = weight(pair(i, j), n)
+               self%now(i, j) = weight(pair(i, j), 0)
+            end do
+            do n = 1, steps - 1
+               do i = 1, hats
+                  self%later(i, j + hats*(steps - 1 - n)) = weight(pair(i, j), n)
+               end do
             end do
          end do
-      end do
-   end subroutine add_response
+      end associate
+   end subroutine add_weights
 
    !> Place of an element of a symmetric matrix of which the upper triangle is stored by columns
    pure function pair(i, j)
@@ -227,124 +230,125 @@ contains
       pair = min(i, j) + max(i, j)*(max(i, j) - 1)/2
    end function pair
 
-   !> Laplace variables over the speed of shear waves at which the waves that pass are needed: of an
-   !> elastic half space as stiff as the plate in a step, for a quarter of the window. They cross
-   !> what is left of the contact long before
-   pure function passing_nodes(self, face) result(p)
-      type(kernel_t), intent(in) :: self
-      type(face_t), intent(in) :: face
-      !> The variables [1/m], none without waves
-      complex(wp), allocatable :: p(:)
+   !> Wavenumber beyond which the hats have no part in the response: the shortest of them is a wave
+   pure function last_wavenumber(row) result(last)
+      type(row_t), intent(in) :: row
+      !> The wavenumber [1/m]
+      real(wp) :: last
 
-      integer, parameter :: part = 4, turn = 4
-      integer :: lags
+      last = max(5.0_wp/row%node(2), 20.0_wp/row%node(row%hats))
+   end function last_wavenumber
 
-      allocate (p(0))
-      if (.not. face%has_waves) return
-      lags = turn*((self%mesh%steps - 1)/(part*turn) + 1)
-      p = nodes(lags, 1.0_wp/self%rate()) &
-         *(real(face%per_shear_speed(cmplx(self%rate(), kind=wp)), wp)/self%rate())
-   end function passing_nodes
+   !> Products g_i g_j/pi of the transforms of hats times the weights of the quadrature, for the
+   !> response at the wavenumbers of a spectrum. On a panel of several parts the response is the
+   !> polynomial through its nodes
+   subroutine find_products(row, spectrum, last, products, error)
+      type(row_t), intent(in) :: row
+      type(spectrum_t), intent(in) :: spectrum
+      !> Wavenumber up to which the response counts [1/m]
+      real(wp), intent(in) :: last
+      !> Products for the first nodes of the spectrum, shape (pairs, nodes)
+      real(wp), allocatable, intent(out) :: products(:, :)
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp), allocatable :: k(:), share(:), dual(:, :), part(:, :), value(:, :)
+      real(wp) :: node(panel_nodes), weight(panel_nodes)
+      integer :: panel, panels, i, j, n, first, last_of
+
+      panels = count(spectrum%start < last)
+      call gauss_nodes(node, weight)
+      allocate (k(0), share(0))
+      do panel = 1, panels
+         associate (parts => spectrum%parts(panel), &
+                    length => spectrum%length(panel)/real(spectrum%parts(panel), wp))
+            k = [k, spectrum%start(panel) + length*[(real(i, wp) + node, i=0, parts - 1)]]
+            share = [share, length/pi*[(weight, i=1, parts)]]
+         end associate
+      end do
+      allocate (dual(row%hats, size(k)), products(pair(row%hats, row%hats), panel_nodes*panels))
+      call transforms(row%node, k, dual, error)
+      if (allocated(error)) return
+      last_of = 0
+      do panel = 1, panels
+         first = last_of + 1
+         last_of = last_of + panel_nodes*spectrum%parts(panel)
+         allocate (part(size(products, 1), first:last_of))
+         do n = first, last_of
+            do j = 1, row%hats
+               part(pair(1, j):pair(j, j), n) = share(n)*dual(j, n)*dual(:j, n)
+            end do
+         end do
+         associate (here => products(:, panel_nodes*(panel - 1) + 1:panel_nodes*panel))
+            if (spectrum%parts(panel) > 1) then
+               allocate (value(size(part, 2), panel_nodes))
+               value = interpolation(node, weight, (k(first:last_of) - spectrum%start(panel)) &
+                  /spectrum%length(panel))
+               here = matmul(part, value)
+               deallocate (value)
+            else
+               here = part
+            end if
+         end associate
+         deallocate (part)
+      end do
+   end subroutine find_products
+
+   !> Polynomials that are 1 at one Gauss node and 0 at the others: by the sum of Legendre
+   !> polynomials, which the Gauss rule integrates exactly
+   pure function interpolation(node, weight, x) result(value)
+      !> Nodes and weights of the Gauss rule on (0, 1)
+      real(wp), intent(in) :: node(:), weight(:)
+      !> Places, 0 to 1
+      real(wp), intent(in) :: x(:)
+      !> Values, shape (size(x), size(node))
+      real(wp) :: value(size(x), size(node))
+
+      real(wp) :: at(0:size(node) - 1), at_node(0:size(node) - 1, size(node))
+      integer :: i, j, n
+
+      n = size(node)
+      do i = 1, n
+         at_node(:, i) = weight(i)*legendre(n - 1, 2.0_wp*node(i) - 1.0_wp) &
+            *[(real(2*j + 1, wp), j=0, n - 1)]
+      end do
+      do i = 1, size(x)
+         at = legendre(n - 1, 2.0_wp*x(i) - 1.0_wp)
+         value(i, :) = matmul(at, at_node)
+      end do
+   end function interpolation
 
    !> Weights of the waves that pass
-   subroutine add_passing(self, face, k, share, dual, p)
+   subroutine add_passing(self, face, products, excess)
       type(kernel_t), intent(inout) :: self
       type(face_t), intent(in) :: face
-      !> Wavenumbers and their weights over pi [1/m]
-      real(wp), intent(in) :: k(:), share(:)
-      !> Transforms of the functions dual to the hats, shape (hats, size(k))
-      real(wp), intent(in) :: dual(:, :)
-      !> Laplace variables over the speed of its shear waves [1/m], of `passing_nodes`
-      complex(wp), intent(in) :: p(:)
+      !> Products of the hats, of `find_products`
+      real(wp), intent(in) :: products(:, :)
+      !> L - 1 of the waves, shape (>= nodes, frequencies)
+      complex(wp), intent(in) :: excess(:, :)
 
       ! part of the row at which `beside` stands, of its elements by their grading an eighth of the
       ! radius: near enough for the curvature on the axis
       real(wp), parameter :: part = 0.25_wp
-      complex(wp) :: excess(size(k)), response(2*size(dual, 1), size(p)), rate
-      real(wp) :: products(2*size(dual, 1), size(k)), stiffness
-      integer :: hats, l, lags, n
+      complex(wp) :: rate
+      real(wp) :: stiffness, near(2*self%mesh%hats, size(products, 2))
+      real(wp) :: weight(2*self%mesh%hats, 2*(size(excess, 2) - 1))
+      integer :: j, n, lags, hats
 
-      hats = size(dual, 1)
+      hats = self%mesh%hats
       self%beside = 1 + ceiling(part*real(hats - 1, wp))
       rate = cmplx(self%rate(), kind=wp)
       stiffness = real(face%plate_modulus(rate), wp)
       self%striker_share = max(0.0_wp, 1.0_wp &
          - 1.0_wp/(stiffness*real(face%local_compliance(rate), wp)))
-      do n = 1, size(k)
-         products(:hats, n) = (share(n)/stiffness*dual(1, n))*dual(:, n)
-         products(hats + 1:, n) = (share(n)/stiffness*dual(self%beside, n))*dual(:, n)
-      end do
-      do l = 1, size(p)
-         call face%half_space_response(k, p(l), excess)
-         response(:, l) = cmplx(matmul(products, real(excess, wp)), &
-            matmul(products, aimag(excess)), wp)
-      end do
-      lags = 2*(size(p) - 1)
+      lags = 2*(size(excess, 2) - 1)
       allocate (self%passing(hats, lags, 2))
-      self%passing = reshape(weights(response), [hats, lags, 2], order=[1, 3, 2])
-      self%passing = self%passing(:, lags:1:-1, :)
-   end subroutine add_passing
-
-   !> Nodes and weights of the quadrature in k: panels of Gauss nodes, short where the response of
-   !> any frequency has a pole nearby, where a layer resonates, and against the waves cos(ka)
-   pure subroutine wavenumbers(face, p, radius, finest, k, weight)
-      type(face_t), intent(in) :: face
-      !> Laplace variables divided by the speed of shear waves [1/m]
-      complex(wp), intent(in) :: p(:)
-      !> Radius of the row a [m]
-      real(wp), intent(in) :: radius
-      !> Length of the shortest element of the hats [m]
-      real(wp), intent(in) :: finest
-      !> Wavenumbers [1/m]
-      real(wp), allocatable, intent(out) :: k(:)
-      !> Weights [1/m]
-      real(wp), allocatable, intent(out) :: weight(:)
-
-      integer, parameter :: order = 10
-      real(wp) :: node(order), share(order), start, length, least, last
-
-      call gauss_nodes(node, share)
-      last = max(5.0_wp/finest, 20.0_wp/radius)
-      if (face%has_waves) then
-         least = minval(abs(p))
-      else
-         least = 1.0_wp/face%thickness
-      end if
-      allocate (k(0), weight(0))
-      start = 0.0_wp
-      do while (start < last)
-         length = min(6.0_wp/radius, 0.7_wp*max(start, least))
-         if (.not. start > 0.0_wp) length = min(length, 0.5_wp*least)
-         if (face%thickness > 0.0_wp .and. start*face%thickness < 25.0_wp) &
-            length = min(length, 1.5_wp/face%thickness)
-         if (face%has_waves .and. start > 0.0_wp) length = min(length, clearance(start))
-         k = [k, start + length*node]
-         weight = [weight, length*share]
-         start = start + length
+      near(:hats, :) = products([(pair(1, j), j=1, hats)], :)
+      near(hats + 1:, :) = products([(pair(self%beside, j), j=1, hats)], :)
+      weight = weights(integrals(near, excess))/stiffness
+      do n = 1, lags
+         self%passing(:, lags + 1 - n, 1) = weight(:hats, n)
+         self%passing(:, lags + 1 - n, 2) = weight(hats + 1:, n)
       end do
-
-   contains
-
-      !> Length that the poles of shear, Rayleigh and bending waves near a wavenumber allow
-      pure function clearance(k) result(length)
-         !> Wavenumber [1/m], > 0
-         real(wp), intent(in) :: k
-         real(wp) :: length
-
-         real(wp) :: wave
-         integer :: l
-
-         length = huge(1.0_wp)
-         do l = 1, size(p)
-            wave = abs(p(l))
-            if (wave > 0.8_wp*k .and. wave < 2.2_wp*k) &
-               length = min(length, 0.77_wp*real(p(l), wp)*min(1.0_wp, k/wave))
-            if (face%base /= base_free) cycle
-            wave = (6.0_wp*(1.0_wp - face%poisson_ratio()))**0.25_wp*sqrt(wave/face%thickness)
-            if (wave*face%thickness < 2.5_wp .and. wave > 0.75_wp*k .and. wave < 1.3_wp*k) &
-               length = min(length, 0.54_wp*k*real(p(l), wp)/abs(p(l)))
-         end do
-      end function clearance
-   end subroutine wavenumbers
+   end subroutine add_passing
 
 end module vcor_solver_coupled_kernel

@@ -27,10 +27,15 @@ module vcor_solver_coupled_row
       real(wp), allocatable :: x(:)
       !> Weights of the springs in integrals from -a to a [m]
       real(wp), allocatable :: weight(:)
-      !> Left one of the two hats that are not 0 at a spring
+      !> Left one of the two hats that are not 0 at a spring, and the value of the right one; the
+      !> left one has the rest of 1
       integer, allocatable :: hat(:)
-      !> Values of these hats at a spring, shape (2, springs)
-      real(wp), allocatable :: value(:, :)
+      real(wp), allocatable :: right(:)
+      !> Springs of an element of the hats, all equal
+      integer, private :: of_element = 0
+   contains
+      procedure :: spread_hats
+      procedure :: gather
    end type row_t
 
    !> Exponent of the grading of the nodes
@@ -57,7 +62,8 @@ contains
       parts = max(1, ceiling(real(springs, wp)/real(2*(hats - 1), wp)))
       self%springs = 2*(hats - 1)*parts
       allocate (self%x(self%springs), self%weight(self%springs), self%hat(self%springs))
-      allocate (self%value(2, self%springs))
+      allocate (self%right(self%springs))
+      self%of_element = 2*parts
       i = 0
       do element = 1, hats - 1
          length = (self%node(element + 1) - self%node(element))/real(parts, wp)
@@ -67,13 +73,59 @@ contains
             ! half of the part for each point, on both sides of the axis
             self%weight(i + 1:i + 2) = length
             self%hat(i + 1:i + 2) = element
-            self%value(2, i + 1:i + 2) = (self%x(i + 1:i + 2) - self%node(element)) &
+            self%right(i + 1:i + 2) = (self%x(i + 1:i + 2) - self%node(element)) &
                /(self%node(element + 1) - self%node(element))
-            self%value(1, i + 1:i + 2) = 1.0_wp - self%value(2, i + 1:i + 2)
             i = i + 2
          end do
       end do
    end subroutine new_row
+
+   !> Add a function on the hats to one on the springs
+   pure subroutine spread_hats(self, hats, springs)
+      class(row_t), intent(in) :: self
+      !> Values at the nodes of the hats
+      real(wp), intent(in) :: hats(:)
+      !> Values at the springs
+      real(wp), contiguous, intent(inout) :: springs(:)
+
+      integer :: element, first, last
+
+      last = 0
+      do element = 1, self%hats - 1
+         first = last + 1
+         last = last + self%of_element
+         springs(first:last) = springs(first:last) + (hats(element) &
+            + (hats(element + 1) - hats(element))*self%right(first:last))
+      end do
+   end subroutine spread_hats
+
+   !> Integrals of the hats times a function on the springs
+   pure subroutine gather(self, springs, hats)
+      class(row_t), intent(in) :: self
+      !> Values at the first springs; 0 at the rest
+      real(wp), intent(in) :: springs(:)
+      !> Integrals
+      real(wp), intent(out) :: hats(:)
+
+      real(wp) :: total, right
+      integer :: element, first, last, i
+
+      hats = 0.0_wp
+      do element = 1, self%hats - 1
+         first = self%of_element*(element - 1) + 1
+         last = min(first + self%of_element - 1, size(springs))
+         if (last < first) exit
+         total = 0.0_wp
+         right = 0.0_wp
+         do i = first, last
+            total = total + springs(i)
+            right = right + self%right(i)*springs(i)
+         end do
+         ! the weights of an element are equal
+         hats(element) = hats(element) + self%weight(first)*(total - right)
+         hats(element + 1) = self%weight(first)*right
+      end do
+   end subroutine gather
 
    !> Cosine transforms of the functions dual to the hats, M^-1 int hat cos(kx) dx over (-a, a) with
    !> the matrix M of products of the hats
@@ -89,10 +141,13 @@ contains
 
       ! below, the integrals over an element by their series
       real(wp), parameter :: small = 0.05_wp
-      real(wp) :: products(size(node), size(node)), third, half, middle, z, even, odd
+      real(wp), dimension(size(node), size(node)) :: products, inverse
+      real(wp) :: third, half, z, even, odd
+      complex(wp) :: turn, wave
       integer :: element, i, info, pivots(size(node))
 
       products = 0.0_wp
+      inverse = 0.0_wp
       do element = 1, size(node) - 1
          third = (node(element + 1) - node(element))/3.0_wp
          products(element, element) = products(element, element) + 2.0_wp*third
@@ -100,28 +155,39 @@ contains
          products(element, element + 1) = third
          products(element + 1, element) = third
       end do
+      do i = 1, size(node)
+         inverse(i, i) = 1.0_wp
+      end do
+      call dgesv(size(node), size(node), products, size(node), pivots, inverse, size(node), info)
+      if (info /= 0) then
+         call raise(error, error_internal, 'the hats of the contact are dependent')
+         return
+      end if
       dual = 0.0_wp
       do i = 1, size(k)
+         wave = 1.0_wp
          do element = 1, size(node) - 1
             half = 0.5_wp*(node(element + 1) - node(element))
-            middle = 0.5_wp*(node(element + 1) + node(element))
             z = k(i)*half
+            ! exp(i k x), from node to middle to node
+            turn = cmplx(cos(z), sin(z), wp)
+            wave = wave*turn
             ! means of cos(z t) and of t sin(z t) over -1 < t < 1
             if (z < small) then
                even = 1.0_wp - z**2/6.0_wp*(1.0_wp - z**2/20.0_wp)
                odd = z/3.0_wp*(1.0_wp - z**2/10.0_wp*(1.0_wp - z**2/28.0_wp))
             else
-               even = sin(z)/z
-               odd = (even - cos(z))/z
+               even = aimag(turn)/z
+               odd = (even - real(turn, wp))/z
             end if
-            even = 2.0_wp*half*even*cos(k(i)*middle)
-            odd = -2.0_wp*half*odd*sin(k(i)*middle)
+            even = 2.0_wp*half*even*real(wave, wp)
+            odd = -2.0_wp*half*odd*aimag(wave)
+            wave = wave*turn
             dual(element, i) = dual(element, i) + even - odd
             dual(element + 1, i) = dual(element + 1, i) + even + odd
          end do
       end do
-      call dgesv(size(node), size(k), products, size(node), pivots, dual, size(node), info)
-      if (info /= 0) call raise(error, error_internal, 'the hats of the contact are dependent')
+      dual = matmul(inverse, dual)
    end subroutine transforms
 
 end module vcor_solver_coupled_row

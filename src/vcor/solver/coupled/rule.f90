@@ -48,36 +48,68 @@ contains
 
    !> Weights of responses given at the nodes, by the inverse discrete transform
    !>
-   !>     W_n = |z|^-n/N [C_0 + C_{N/2} + 2 sum_l Re(C_l exp(2 pi i l n/N))],   0 < l < N/2
+   !>     W_n = |z|^-n/N sum_l C_l exp(-2 pi i l n/N),   C_{N-l} the conjugate of C_l
    pure function weights(response) result(weight)
       !> Responses C at the nodes, shape (:, 0:steps/2)
       complex(wp), intent(in) :: response(:, 0:)
       !> W_0, W_1, ..., shape (:, 0:steps-1)
       real(wp) :: weight(size(response, 1), 0:2*ubound(response, 2) - 1)
 
-      ! real and imaginary part of what a response is multiplied by, negative for the latter
-      real(wp), allocatable :: cosine(:, :), sine(:, :)
-      real(wp) :: circle(0:2*ubound(response, 2) - 1), factor
-      integer :: l, n, phase, steps
+      integer :: n, steps
 
       steps = 2*ubound(response, 2)
-      do l = 0, steps - 1
-         circle(l) = cos(2.0_wp*pi*real(l, wp)/real(steps, wp))
-      end do
-      allocate (cosine(0:steps/2, 0:steps - 1), sine(0:steps/2, 0:steps - 1))
+      call sum_transform(response, weight)
       do n = 0, steps - 1
-         factor = 2.0_wp*wrap**(-real(n, wp)/real(steps, wp))/real(steps, wp)
-         phase = 0
-         do l = 0, steps/2
-            cosine(l, n) = factor*circle(phase)
-            ! the sine is the cosine a quarter later
-            sine(l, n) = factor*circle(modulo(phase - steps/4, steps))
-            phase = modulo(phase + n, steps)
-         end do
-         cosine(0, n) = 0.5_wp*cosine(0, n)
-         cosine(steps/2, n) = 0.5_wp*cosine(steps/2, n)
+         weight(:, n) = weight(:, n)*(wrap**(-real(n, wp)/real(steps, wp))/real(steps, wp))
       end do
-      weight = matmul(real(response, wp), cosine) + matmul(aimag(response), sine)
    end function weights
+
+   !> The sums of `weights`. Those of even and of odd n are such sums of half as many terms, of
+   !> C_l +- C_{l+N/2}, as long as N is a multiple of 4
+   pure recursive subroutine sum_transform(c, total)
+      !> C_l, shape (:, 0:N/2)
+      complex(wp), intent(in) :: c(:, 0:)
+      !> The sums, shape (:, 0:N-1)
+      real(wp), intent(out) :: total(:, 0:)
+
+      complex(wp), allocatable :: even(:, :), odd(:, :)
+      real(wp), allocatable :: part(:, :)
+      complex(wp) :: turn
+      integer :: half, l, n
+
+      half = ubound(c, 2)
+      if (modulo(half, 2) /= 0) then
+         do n = 0, 2*half - 1
+            total(:, n) = real(c(:, 0), wp) + (1 - 2*modulo(n, 2))*real(c(:, half), wp)
+            do l = 1, half - 1
+               turn = unit(modulo(l*n, 2*half), 2*half)
+               total(:, n) = total(:, n) + 2.0_wp*(real(c(:, l), wp)*real(turn, wp) &
+                  - aimag(c(:, l))*aimag(turn))
+            end do
+         end do
+         return
+      end if
+      allocate (even(size(c, 1), 0:half/2), odd(size(c, 1), 0:half/2), part(size(c, 1), 0:half - 1))
+      do l = 0, half/2
+         even(:, l) = c(:, l) + conjg(c(:, half - l))
+         odd(:, l) = (c(:, l) - conjg(c(:, half - l)))*unit(l, 2*half)
+      end do
+      call sum_transform(even, part)
+      total(:, 0::2) = part
+      call sum_transform(odd, part)
+      total(:, 1::2) = part
+   end subroutine sum_transform
+
+   !> exp(-2 pi i l/N)
+   elemental function unit(l, n)
+      !> The numbers l and N
+      integer, intent(in) :: l, n
+      complex(wp) :: unit
+
+      real(wp) :: angle
+
+      angle = -2.0_wp*pi*real(l, wp)/real(n, wp)
+      unit = cmplx(cos(angle), sin(angle), wp)
+   end function unit
 
 end module vcor_solver_coupled_rule

@@ -11,6 +11,10 @@
 !>
 !> The sphere has left where the structure cannot reach it any more (`vcor_impact_structure`). What
 !> touches before that counts, also under gravity.
+!>
+!> A contact that is just made or just missed is not known better than the velocity of the impact.
+!> Impacts with velocities next to it show what it changes: the results depend smoothly on the
+!> velocity, to first order along a line, but where the number of contacts changes.
 module vcor_solver_direct_contacts
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -24,6 +28,7 @@ module vcor_solver_direct_contacts
    use vcor_solver_direct_evaluation, only : fall_of, parabola
    use vcor_solver_direct_modes, only : modes_t
    use vcor_solver_direct_row, only : row_t
+   use vcor_solver_ringing, only : ringing_t
    use vcor_solver_type, only : solver_settings_t
    use vcor_tuning, only : direct_first_steps, direct_most_work, sum_share, sum_window
    implicit none
@@ -37,6 +42,10 @@ module vcor_solver_direct_contacts
    integer, parameter :: most_nodes = 16384
    !> Steps of flight after which the reach is computed anew: the dampings make it smaller
    integer, parameter :: reach_steps = 64
+   !> Relative distance of the velocities next to that of the impact
+   real(wp), parameter :: next_to = 1.0e-6_wp
+   !> Multiplications in the time that a step takes besides those for modes and springs
+   real(wp), parameter :: work_of_step = 300.0_wp
    !> Weights of the newest node, the one before and that before it, for integrals over a step
    real(wp), parameter :: rule(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
 
@@ -48,6 +57,8 @@ module vcor_solver_direct_contacts
       !> Modes of the structure and springs of the contact
       type(modes_t) :: modes
       type(row_t) :: row
+      !> Whether no mode is a rigid motion
+      logical :: is_held = .false.
       !> Flexibility that follows at once [m/N]
       real(wp) :: residual = 0.0_wp
       !> Time [s], indentation [m], impulse [N s] and its integral [N s2]
@@ -89,8 +100,8 @@ contains
       type(exponential_sum_t) :: terms
       type(trajectory_t) :: near
       type(impact_t) :: other
-      real(wp) :: dt, shortest, window, effort, value(3, 5), rounded(2)
-      logical :: given, exact
+      real(wp) :: dt, shortest, window, effort, value(3, 6), beside(2, 3), thousandth
+      logical :: given, exact, short_enough
       integer :: level, side
 
       given = settings%time_step > 0.0_wp
@@ -102,6 +113,7 @@ contains
       if (allocated(error)) return
       value = unset
       level = 0
+      thousandth = 0.0_wp
       do
          level = level + 1
          call march(settings, impact, terms, vibration, dt, trajectory, effort, error)
@@ -114,25 +126,26 @@ contains
             cycle
          end if
          value = cshift(value, 1, 1)
-         value(3, :) = [-(last(trajectory, col_sphere_velocity) - trajectory%rigid_velocity) &
-            /impact%velocity, -last(trajectory, col_sphere_velocity)/impact%velocity, &
-            trajectory%first_end, trajectory%max_force, trajectory%max_indentation]
+         value(3, :) = [results_of(trajectory, impact), &
+            trajectory%first_end, trajectory%max_force, trajectory%max_indentation, &
+            real(trajectory%contacts, wp)]
          if (trajectory%status == contact_unknown) then
-            ! steps that are too long let the sphere hop
-            if (3.0_wp*effort > direct_most_work .or. dt < shortest) then
+            ! steps that are too long let the sphere hop from node to node, half as far with half of
+            ! the step; contacts that are real stay where they are
+            if (last(trajectory, col_time) > 0.75_wp*thousandth .and. thousandth > 0.0_wp &
+                .or. 3.0_wp*effort > direct_most_work .or. dt < shortest) then
                call raise(error, error_numerical, 'the sphere has struck the structure a ' &
                   //'thousand times and is still within its reach')
                return
             end if
+            thousandth = last(trajectory, col_time)
             level = 0
          else if (trajectory%status /= contact_separated) then
             if (level >= 3 .or. 3.0_wp*effort > direct_most_work) return
          else if (level >= 3) then
             call set_errors()
             if (given) exit
-            if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= share*settings%accuracy &
-                .and. trajectory%max_force_error <= settings%accuracy*trajectory%max_force &
-                .and. trajectory%contact_time_error <= settings%accuracy*trajectory%first_end) exit
+            if (short_enough) exit
             if (3.0_wp*effort > direct_most_work) then
                if (trajectory%misses_by_far()) call raise(error, error_numerical, 'the ' &
                   //'accuracy asked for is out of reach of product integration: give a larger ' &
@@ -142,21 +155,38 @@ contains
          end if
          dt = 0.5_wp*dt
       end do
-      if (allocated(error) .or. trajectory%contacts == 1) return
-      ! a contact that is just missed, or just made, shows at velocities next to this one
-      rounded = unset
+      if (allocated(error)) return
+      if (trajectory%contacts == 1 .and. .not. trajectory%just_missed) return
       do side = 1, 2
          other = impact
-         other%velocity = impact%velocity*(1.0_wp + real(2*side - 3, wp)*1.0e-6_wp)
-         call march(settings, other, terms, vibration, 2.0_wp*dt, near, effort, error)
+         other%velocity = impact%velocity*(1.0_wp + real(2*side - 3, wp)*next_to)
+         ! with longer steps the number of contacts would change at another velocity
+         call march(settings, other, terms, vibration, dt, near, effort, error)
          if (allocated(error)) return
-         rounded(side) = -last(near, col_sphere_velocity)/other%velocity
+         beside(side, :) = [results_of(near, other), real(near%contacts, wp)]
       end do
-      rounded(1) = abs(rounded(1) - 2.0_wp*value(2, 2) + rounded(2))
-      trajectory%cor_sphere_error = trajectory%cor_sphere_error + rounded(1)
-      trajectory%cor_error = trajectory%cor_error + rounded(1)
+      trajectory%change_beside = max(change_of(1), change_of(2))
+      trajectory%cor_error = trajectory%cor_error + change_of(1)
+      trajectory%cor_sphere_error = trajectory%cor_sphere_error + change_of(2)
 
    contains
+
+      !> Largest change of a result beside the impact, beyond that along a line. If the number of
+      !> contacts is another one on both sides, nothing tells the line
+      pure function change_of(i) result(change)
+         !> Result
+         integer, intent(in) :: i
+         !> Change
+         real(wp) :: change
+
+         associate (e => beside(:, i), middle => value(3, i))
+            if (all(nint(beside(:, 3)) /= nint(value(3, 6)))) then
+               change = maxval(abs(e - middle))
+            else
+               change = abs(e(1) - 2.0_wp*middle + e(2))
+            end if
+         end associate
+      end function change_of
 
       !> Expand contact and structure in sums of exponentials
       subroutine find_sums()
@@ -174,11 +204,13 @@ contains
          exact = .not. max(terms%error, vibration%error) > 0.0_wp
       end subroutine find_sums
 
-      !> Errors of the results from the last three runs, with those of the sums
+      !> Errors of the results from the last three runs, with those of the sums, and whether the steps
+      !> are short enough
       subroutine set_errors()
 
          type(richardson_t) :: found
-         real(wp) :: of_sums
+         type(ringing_t) :: ringing
+         real(wp) :: of_sums, of_modes(2)
 
          of_sums = terms%error + vibration%error
          trajectory%accuracy = settings%accuracy
@@ -192,8 +224,31 @@ contains
          trajectory%contact_time_error = found%error + of_sums*trajectory%first_end
          found = richardson(value(:, 4))
          trajectory%max_force_error = found%error + of_sums*trajectory%max_force
+         short_enough = max(trajectory%cor_error, trajectory%cor_sphere_error) &
+            <= share*settings%accuracy &
+            .and. trajectory%max_force_error <= settings%accuracy*trajectory%max_force &
+            .and. trajectory%contact_time_error <= settings%accuracy*trajectory%first_end
+         call ringing%begin(impact, vibration, impact%time_scale())
+         of_modes = ringing%velocity_errors(impact, abs(last(trajectory, col_velocity)), &
+            last(trajectory, col_indentation))
+         call ringing%add_errors(impact, trajectory, of_modes(2) &
+            + ringing%velocity_of_inertia(impact), trajectory%contacts)
       end subroutine set_errors
    end subroutine solve_contacts
+
+   !> Coefficients of restitution against the rigid motion of the structure and of the sphere alone,
+   !> 0 of a sphere that does not leave
+   pure function results_of(trajectory, impact) result(e)
+      type(trajectory_t), intent(in) :: trajectory
+      type(impact_t), intent(in) :: impact
+      !> Coefficients
+      real(wp) :: e(2)
+
+      e = 0.0_wp
+      if (trajectory%status == contact_separated) e = [trajectory%rigid_velocity, 0.0_wp] &
+         - last(trajectory, col_sphere_velocity)
+      e = e/impact%velocity
+   end function results_of
 
    !> A column of the last node
    pure function last(trajectory, column) result(value)
@@ -256,6 +311,8 @@ contains
          if (.not. run%force(1) > 0.0_wp .and. trajectory%contacts > 0) then
             if (mod(flown, reach_steps) == 0) reach = vibration%reach(run%modes%state())
             flown = flown + 1
+            if (trajectory%contacts == 1) trajectory%just_missed = trajectory%just_missed &
+               .or. misses(run, impact)
             if (has_left(run, impact, vibration, reach)) then
                trajectory%status = contact_separated
                exit
@@ -300,6 +357,7 @@ contains
 
       self%dt = dt
       self%residual = vibration%residual
+      self%is_held = all(vibration%square > 0.0_wp)
       call self%modes%prepare(vibration, dt)
       call self%row%prepare(terms, impact%law, dt, 0.0_wp)
       if (.not. self%residual > 0.0_wp) self%force(1) = impact%first_force()
@@ -350,7 +408,7 @@ contains
          self%power(:, 1) = force*[self%sphere_velocity(impact) - velocity, velocity]
          if (any(abs(self%power(2, :)) > 0.0_wp)) self%work = self%work &
             + dt*matmul(self%power, rule)
-         self%effort = self%effort + self%modes%work &
+         self%effort = self%effort + work_of_step + self%modes%work &
             + real(self%row%count*(20 + 4*self%row%modes()), wp)
       end associate
    end subroutine take_step
@@ -431,6 +489,7 @@ contains
       if (trajectory%contacts == 1) then
          trajectory%first_end = run%t - back
          trajectory%first_velocity = run%sphere_velocity(impact) - impact%gravity*back
+         trajectory%first_speed = trajectory%first_velocity - run%modes%rate()
       end if
       modes = run%modes%state()
       trajectory%rigid_velocity = vibration%rigid_velocity(modes)
@@ -457,9 +516,35 @@ contains
       real(wp), intent(in) :: reach
       logical :: has_left
 
-      has_left = vibration%is_left_by(run%modes%state(), run%sphere(impact), &
-         run%sphere_velocity(impact), reach)
+      if (run%is_held) then
+         ! the same without the state of all modes
+         has_left = run%sphere_velocity(impact) < 0.0_wp .and. -run%sphere(impact) >= reach
+      else
+         has_left = vibration%is_left_by(run%modes%state(), run%sphere(impact), &
+            run%sphere_velocity(impact), reach)
+      end if
    end function has_left
+
+   !> Whether a sphere without contact is closest to the structure, and so close that it touches it
+   !> at a velocity of the impact next to this one: displacements after the first contact grow as
+   !> the velocity, or a little faster
+   pure function misses(run, impact)
+      type(run_t), intent(in) :: run
+      type(impact_t), intent(in) :: impact
+      logical :: misses
+
+      real(wp) :: bend, closest, sphere
+
+      misses = .false.
+      associate (depth => run%depth)
+         if (.not. maxval(depth) < 0.0_wp) return
+         if (.not. (depth(2) >= depth(1) .and. depth(2) > depth(3))) return
+         bend = depth(1) - 2.0_wp*depth(2) + depth(3)
+         closest = depth(2) - 0.125_wp*(depth(1) - depth(3))**2/bend
+         sphere = run%sphere(impact)
+         misses = -closest < 2.0_wp*next_to*(abs(sphere) + abs(sphere - run%s))
+      end associate
+   end function misses
 
    !> Whether the weight keeps the sphere in contact, at rest
    pure function is_at_rest(run, impact) result(rests)
@@ -541,7 +626,7 @@ contains
       flown = 0
       do
          call run%take_step(impact)
-         back = run%force(1) > 0.0_wp .or. run%effort > direct_most_work
+         back = run%force(1) > 0.0_wp .or. run%effort > direct_most_work .or. misses(run, impact)
          if (back) return
          if (mod(flown, reach_steps) == 0) reach = vibration%reach(run%modes%state())
          flown = flown + 1

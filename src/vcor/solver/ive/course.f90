@@ -10,6 +10,7 @@ module vcor_solver_ive_course
    use vcor_solver_ive_event, only : event_close, event_end, solve_up_to, time_to_event
    use vcor_solver_ive_newton, only : solve_companion
    use vcor_solver_ive_panel, only : panel_t, step_t
+   use vcor_solver_ringing, only : ringing_t
    use vcor_tuning, only : ive_harmless, ive_rounding, ive_rounding_per_panel, ive_share
    implicit none
    private
@@ -60,6 +61,8 @@ module vcor_solver_ive_course
       real(wp) :: added = 0.0_wp
       !> Velocity that both solutions miss alike after the largest indentation, over `speed` [-]
       real(wp) :: kick = 0.0_wp
+      !> Ringing of a structure's modes, which both solutions miss alike
+      type(ringing_t) :: ringing
       !> Errors of the results, once the contact has ended
       real(wp) :: last_errors(4) = 0.0_wp
       !> Rebound: time left [s], and t1' [-] and t1'' [1/s], for a guess

@@ -13,7 +13,7 @@ module vcor_solver_ive_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_indentation, col_plate_velocity, &
-      col_sphere_velocity, col_time, &
+      col_sphere_velocity, col_time, col_velocity, &
       contact_separated, refuse_growth, trajectory_t
    use vcor_kinds, only : finest_accuracy, unset, wp
    use vcor_numeric_radau_dense, only : width
@@ -28,7 +28,7 @@ module vcor_solver_ive_march
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_newton, only : guess_growth, guess_rebound, solve_companion, solve_panel
    use vcor_solver_ive_panel, only : step_t
-   use vcor_tuning, only : ive_first, ive_growth, ive_leftover, ive_part, &
+   use vcor_tuning, only : direct_most_work, ive_first, ive_growth, ive_leftover, ive_part, &
       ive_rounding, ive_rounding_of_fall, ive_rounding_per_panel, ive_safety, ive_settling, &
       ive_share
    implicit none
@@ -40,6 +40,8 @@ module vcor_solver_ive_march
    integer, parameter :: most_panels = 20000
    !> Number of times that a panel in which t1 rises is halved before the rise is real
    integer, parameter :: most_halvings = 4
+   !> Multiplications in the time that a panel takes for each mode of a structure
+   real(wp), parameter :: work_of_mode = 300.0_wp
 
 contains
 
@@ -69,6 +71,7 @@ contains
 
       type(course_t) :: course
       type(approach_t), target :: approach
+      real(wp) :: work
       integer :: trial
       logical :: over, solved
 
@@ -77,7 +80,11 @@ contains
       call start(course, rules, bridge, impact, sums, approach, accuracy, share, time_scale, &
          end_time)
       call course%begin(trajectory)
+      work = 0.0_wp
+      if (allocated(sums%vibration)) work = work_of_mode*real(size(sums%vibration%square), wp)
       do trial = 1, most_panels
+         ! a contact that takes so many panels lasts: product integration follows it in less time
+         if (real(trial, wp)*work > direct_most_work) exit
          call choose_step(course)
          if (.not. course%step%duration > epsilon(1.0_wp)*course%fine%start%time) exit
          call solve_step(course, solved)
@@ -107,8 +114,15 @@ contains
          if (over .or. course%reaches_end_time) return
          if (course%ends) then
             trajectory%status = contact_separated
-            if (allocated(sums%vibration)) call judge_separation(course%fine, trajectory)
             errors = course%last_errors
+            trajectory%cor_error = 0.0_wp
+            trajectory%cor_sphere_error = 0.0_wp
+            trajectory%contact_time_error = 0.0_wp
+            trajectory%max_force_error = 0.0_wp
+            if (allocated(sums%vibration)) then
+               call add_ringing(course, trajectory, errors)
+               call judge_separation(course%fine, trajectory)
+            end if
             return
          end if
          call go_on(course)
@@ -117,6 +131,29 @@ contains
       if (over) return
       call raise_no_end(course, error)
    end subroutine follow
+
+   !> Add what the ringing of a structure's modes changes: to the errors of the velocities, which
+   !> shorter panels make smaller, and to those that are stated only, of time and force. There it
+   !> falls with a lower power of the frequency
+   subroutine add_ringing(self, trajectory, errors)
+      !> The course, at the end of the contact
+      type(course_t), intent(in) :: self
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Errors of the results, see `course_t`
+      real(wp), intent(inout) :: errors(4)
+
+      real(wp) :: indentation, error(2)
+
+      associate (impact => self%fine%impact, last => trajectory%state(:, trajectory%last))
+         ! the radius of a contact that recedes falls to 0
+         indentation = 0.0_wp
+         if (.not. self%fine%recedes) indentation = last(col_indentation)
+         error = self%ringing%velocity_errors(impact, abs(last(col_velocity)), indentation)
+         errors(of_cor:of_cor_sphere) = errors(of_cor:of_cor_sphere) + error(1)/impact%velocity
+         trajectory%first_speed = last(col_velocity)
+         call self%ringing%add_errors(impact, trajectory, error(2), 1)
+      end associate
+   end subroutine add_ringing
 
    !> Find out whether the first separation from a structure is the last, and what energy is left in
    !> it
@@ -173,6 +210,7 @@ contains
       call start_motion(self%coarse, rules(2))
       self%control%length = first_length(self, impact%law%contact_time*time_scale)
       call resolve_modes()
+      if (allocated(sums%vibration)) call self%ringing%begin(impact, sums%vibration, time_scale)
 
    contains
 
@@ -234,13 +272,17 @@ contains
    subroutine choose_step(self)
       type(course_t), intent(inout) :: self
 
-      real(wp) :: part, doubled
+      real(wp) :: part, doubled, allowed
 
       associate (step => self%step, time => self%fine%start%time)
          self%ends = .false.
          step%kind = linear
+         allowed = longest(self, linear)
+         self%control%length = min(self%control%length, allowed)
          step%duration = self%control%length
          if (self%fine%recedes) then
+            allowed = longest(self, closing)
+            self%control%end_length = min(self%control%end_length, allowed)
             self%ends = self%rest <= self%control%end_length
             if (self%ends) then
                step = step_t(closing, self%rest)
@@ -258,10 +300,12 @@ contains
             if (.not. self%control%refused < huge(1.0_wp)) &
                doubled = ive_safety*(2.0_wp + ive_safety)*time
             if (.not. time > 0.0_wp) then
-               step%kind = opening
+               allowed = longest(self, opening)
+               step = step_t(opening, min(step%duration, allowed))
             else if (step%duration >= doubled .and. (has_settled(self) &
                      .or. self%fine%impact%law%receding)) then
-               step = step_t(doubling, 3.0_wp*time)
+               allowed = longest(self, doubling)
+               if (allowed >= 3.0_wp*time) step = step_t(doubling, 3.0_wp*time)
             end if
          end if
          self%reaches_end_time = time + step%duration >= self%end_time
@@ -271,6 +315,17 @@ contains
          if (any(step%kind == [doubling, closing])) step%kind = linear
       end associate
    end subroutine choose_step
+
+   !> Longest panel of a map in which no ringing mode of a structure is missed
+   function longest(self, kind) result(duration)
+      type(course_t), intent(inout) :: self
+      !> The map
+      integer, intent(in) :: kind
+      !> Duration [s]
+      real(wp) :: duration
+
+      call self%ringing%limit(self%fine%rule, kind, self%control%tolerance*self%speed, duration)
+   end function longest
 
    !> Whether modes of a continuous spectrum have settled since first contact: the motion goes on
    !> in the root of time
@@ -432,6 +487,9 @@ contains
             self%kick = self%missed_kick()
             self%control%excess = max(self%control%excess, self%kick/self%control%tolerance)
          end if
+         self%control%excess = max(self%control%excess, self%ringing%added( &
+            fine%rule%map(self%step%kind), fine%start%time, self%step%duration, &
+            self%control%tolerance*self%speed)/(self%control%tolerance*self%speed))
          if (hides_an_end(self, trajectory%max_force)) self%control%excess = huge(1.0_wp)
          if (.not. self%control%excess >= 0.0_wp) self%control%excess = huge(1.0_wp)
          if (fine%recedes .or. is_refused(self)) return
@@ -584,6 +642,8 @@ contains
             call self%end_without_force()
          end if
          call self%record(trajectory)
+         call self%ringing%accept(fine%rule%map(self%step%kind), fine%start%time, &
+            self%step%duration)
          if (.not. fine%recedes) call self%record_peaks(trajectory)
          if (fine%impact%law%receding .and. .not. fine%recedes) call fine%approach%add( &
             fine%rule, fine%sums%contact%rates, panel)

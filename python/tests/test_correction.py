@@ -1,0 +1,309 @@
+"""Exact results from corrected thin ones: polynomials, samples and bands against solved samples."""
+
+import json
+import os
+import re
+import warnings
+
+import numpy as np
+import pandas as pd
+import pytest
+from conftest import PAPER, ROOT
+
+import vcor
+from vcor import _command, uncertainty_samples
+from vcor._correction import Coordinates, Correction, parts_of
+from vcor.uncertainty import Drawn, _propagate
+from vcor.uncertainty_samples import ACCURATE, sampled
+from vcor.uncertainty_sweep import _bands
+
+EXAMPLES = ROOT / "examples"
+QUANTITIES = ["cor_sphere", "contact_time", "max_force"]
+#: Error of a sample over its estimate from twenty of them, with the tails beyond these
+TAILS = 3.0
+
+
+@pytest.fixture(autouse=True)
+def quiet():
+    """Verdicts of the impacts are not what is tested."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        yield
+
+
+def coordinates(*uniform, weight=1, most=8):
+    n = len(uniform)
+    return Coordinates(np.array(uniform), np.full(n, weight), np.full(n, most))
+
+
+def test_polynomials_are_orthonormal():
+    """By Gauss's rules: normal and uniform coordinates, all products up to the fourth degree."""
+    x, w = np.polynomial.hermite_e.hermegauss(8)
+    y, v = np.polynomial.legendre.leggauss(8)
+    z = np.stack(np.meshgrid(x, np.sqrt(3) * y), axis=-1).reshape(-1, 2)
+    weights = np.outer(v / v.sum(), w / w.sum()).ravel()
+    both = coordinates(False, True)
+    values = both.values(z, both.terms(4))
+    assert values.shape[1] == 15
+    assert np.allclose(values.T @ (weights[:, None] * values), np.eye(15), atol=1e-12)
+
+
+def test_terms_by_their_weights():
+    along = Coordinates(np.array([False, True]), np.array([2, 1]), np.array([8, 3]))
+    found = {tuple(one) for one in along.terms(5).tolist()}
+    assert found == {(0, 0), (0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (1, 3), (2, 0), (2, 1)}
+
+
+def test_ratios_and_differences_are_found_by_what_is_left_out():
+    """A product and a sum with a rough result are met to rounding, one with its zeros too."""
+    rng = np.random.default_rng(5)
+    z = rng.standard_normal((60, 2))
+    wave = np.exp(np.sin(3 * z[:, 0]))
+    rough = np.stack([wave, wave, np.sin(9 * z[:, 0])])
+    smooth = 2 + z[:, 0] * z[:, 1] - 0.3 * z[:, 1] ** 2
+    exact = np.stack([rough[0] * smooth, rough[1] + smooth, rough[2] + smooth]).T
+    first = np.array([[1.0, 2.0, 3.0]])
+    thin_0 = np.array([[1.0, 0.5, 2.0]])
+    parts = parts_of("thin", rough.T, thin_0, first)
+    found = Correction.fitted(coordinates(False, False), z[:40], exact[:40] / first,
+                              {key: one[:40] for key, one in parts.items()})  # fmt: skip
+    assert found.keys == [("thin", True), ("thin", False), ("thin", False)]
+    left = {key: one[40:] for key, one in parts.items()}
+    assert np.allclose(found.results(z[40:], left) * first, exact[40:], rtol=1e-9)
+
+
+def test_what_thin_mechanics_do_not_have_is_not_used():
+    z = np.random.default_rng(2).standard_normal((40, 1))
+    exact = 1 + z + z**2
+    parts = parts_of("thin", np.where(z > 1, np.nan, exact), np.ones((1, 1)), np.ones((1, 1)))
+    found = Correction.fitted(coordinates(False), z, exact, parts)
+    assert found.keys == [None] and np.allclose(found.results(z, {}), exact)
+
+
+def vary_of(case, **more):
+    """Spreads of an impact, its body and its plate, and of a modulus and a time."""
+    plate = case["plate.material"]
+    spreads = {
+        "sphere.radius": "3%",
+        f"{plate}.density": "3%",
+        f"{plate}.poisson_ratio": "0.4:0.49",
+    }
+    drop = case["impact.drop_height"] is not None
+    spreads["impact.drop_height" if drop else "impact.velocity"] = "5%"
+    for key in ("glassy_modulus", "equilibrium_modulus", "coefficient", "beta", "moduli(1)"):
+        if f"{plate}.{key}" in case and case[f"{plate}.{key}"]:
+            spreads[f"{plate}.{key}"] = "10%"
+    return spreads | more
+
+
+def thin_case(file, **settings):
+    case = vcor.read(EXAMPLES / file)
+    case[f"{case['plate.material']}.poisson_ratio"] = 0.45
+    for address, value in settings.items():
+        case[address.replace("__", ".")] = value
+    return case
+
+
+@pytest.mark.parametrize(("file", "settings"), [
+    ("paper/sls.nml", {}), ("paper/sls.nml", {"contact__law": "receding"}),
+    ("paper/sls.nml", {"plate__waves": "constant"}), ("paper/sls.nml", {"impact__velocity": 0.5}),
+    ("paper/butyl_prony.nml", {}), ("paper/butyl_prony.nml", {"plate__waves": "constant"}),
+    ("paper/butyl_power_law.nml", {}), ("paper/butyl_cerf.nml", {}),
+    ("paper/butyl_cerf.nml", {"contact__law": "receding"}),
+    ("glass_bead_on_pmma.nml", {"plate__waves": "relaxing"}),
+])  # fmt: skip
+def test_corrected_samples_are_those_that_are_solved(file, settings):
+    """Ten thin cases from others without their waves, or with those of other laws."""
+    case = thin_case(file, **settings)
+    one, two = (
+        _propagate(case, vary_of(case), None, 1024, QUANTITIES, 1, None, corrected)
+        for corrected in (True, False)
+    )
+    assert one.fresh == 20 < one.solved < two.solved == two.samples and two.fresh == 0
+    assert (one.table.correction <= ACCURATE).all() and (two.table.correction == 0).all()
+    for key in ("first", "total"):
+        off = np.abs(one.table[key] - two.table[key])
+        assert (off <= two.table[f"{key}_error"] + 1e-12).all()
+        # the samples are the same, so that indices differ by much less than those of others do
+        assert off.max() <= TAILS * ACCURATE
+    deviation = two.table.material
+    for key in ("mean", "percentiles", "swing"):
+        assert (np.abs(one.table[key] - two.table[key]) <= TAILS * ACCURATE * deviation).all()
+    assert (one.table["value"] == two.table["value"]).all()
+    assert (one.table.elasticity == two.table.elasticity).all()
+
+
+def test_the_stated_error_is_that_of_all_samples():
+    case = thin_case("paper/butyl_prony.nml")
+    drawn = Drawn.of(case, vary_of(case), None, 1024, QUANTITIES, 3)
+    one, two = (
+        sampled([drawn.plan], QUANTITIES, 3, None, corrected) for corrected in (True, False)
+    )
+    deviation = two.found[0].std(axis=0)
+    error = np.sqrt(np.mean(((one.found[0] - two.found[0]) / deviation) ** 2, axis=0))
+    assert (error < TAILS * one.error).all() and (error > one.error / TAILS).all()
+
+
+def test_wide_spreads_take_more_impacts():
+    """Until the error is small enough."""
+    case = thin_case("paper/sls.nml")
+    vary = {"impact.velocity": "0.5:20", "rubber.beta": "350:5000"}
+    narrow, wide = (
+        _propagate(case, one, None, 4096, ["cor_sphere"], 1, None, True)
+        for one in (dict.fromkeys(vary, "2%"), vary)
+    )
+    assert narrow.solved < wide.solved and wide.fresh == 20
+    solved = _propagate(case, vary, None, 4096, ["cor_sphere"], 1, None, False)
+    off = np.abs(wide.table.percentiles - solved.table.percentiles)
+    assert (off < TAILS * ACCURATE * solved.table.material).all()
+
+
+def test_what_jumps_is_not_corrected():
+    """A whole number of steps does not follow the parameters."""
+    case = thin_case("paper/butyl_power_law.nml")
+    vary = {"butyl.coefficient": "0.5e6:5e6", "impact.velocity": "0.1:20"}
+    found = _propagate(case, vary, None, 512, ["cor", "steps"], 1, None, True)
+    assert found.fresh == 0 and found.solved == found.samples
+
+
+def test_impacts_without_a_result_are_not_corrected():
+    """A few samples outlast the end time: all are solved, and these are lost."""
+    case = thin_case("paper/sls.nml")
+    times = _propagate(case, {"rubber.beta": "20%"}, None, 512, ["contact_time"], 1, None, False)
+    case["solver.end_time"] = float(times.table.percentiles.sel(percent=97.5).item())
+    found = _propagate(case, {"rubber.beta": "20%"}, None, 512, ["contact_time"], 1, None, True)
+    assert found.fresh == 0 and 0 < found.lost < 0.1 * found.samples
+
+
+def test_values_that_make_no_impact_are_lost_alone():
+    """As many as of samples that are solved, and the others are corrected."""
+    case = thin_case("paper/sls.nml")
+    case["rubber.poisson_ratio"] = 0.49
+    one, two = (
+        _propagate(case, {"rubber.poisson_ratio": "0.006", "rubber.beta": "5%"}, None, 1024,
+                   ["cor"], 1, None, corrected)
+        for corrected in (True, False)
+    )  # fmt: skip
+    assert one.lost == two.lost > 0 and one.fresh == 20
+
+
+def test_contacts_are_not_mixed():
+    """Impacts of one contact and of two are no neighbours."""
+    case = thin_case("paper/sls.nml")
+    drawn = Drawn.of(case, {"rubber.beta": "5%"}, None, 64, ["cor"], 1)
+    made = uncertainty_samples._Corrected([drawn.plan], ["cor"], 1, None)
+    points = made._points(lambda n: np.linspace(0.1, 0.9, n)[:, None], 9)
+    assert made._are_smooth(points)
+    points.exact[3, made.columns.index("contacts")] = 2
+    assert not made._are_smooth(points)
+    points.exact[3, made.columns.index("contacts")] = 1
+    points.exact[4, made.columns.index("status")] = 1
+    assert not made._are_smooth(points)
+
+
+def test_bands_by_one_correction():
+    """Of all points of a sweep at once, against samples that are solved at each."""
+    case = thin_case("paper/sls.nml")
+    vary = {"rubber.beta": "5%", "rubber.glassy_modulus": "5%", "impact.velocity": "2%"}
+    case = vcor.Case(case.text() + "&sweep parameter = 'impact.velocity', start = 1.0, stop = 20.0,"
+                     " count = 7, spacing = 'log' /\n")  # fmt: skip
+    one, two = (
+        _bands(case, vary, None, 512, QUANTITIES, 1, None, corrected) for corrected in (True, False)
+    )
+    assert one.points[0].fresh == 20 and one.points[0].solved < 7 * 100
+    assert "samples" in one.table.attrs and "samples" not in two.table.attrs
+    for name in QUANTITIES:
+        deviation = two.table[f"{name}_material"]
+        for end in ("2.5", "50", "97.5"):
+            off = np.abs(one.table[f"{name}_p{end}"] - two.table[f"{name}_p{end}"])
+            assert (off <= TAILS * ACCURATE * deviation).all()
+    for first, second in zip(one.points, two.points, strict=True):
+        assert np.allclose(first.table.total, second.table.total, atol=TAILS * ACCURATE)
+
+
+def test_a_covariance_is_corrected(tmp_path):
+    """Parameters that move together are coordinates of their own."""
+    case = thin_case("paper/sls.nml")
+    values = np.array([1.5e7, 300.0, 1200.0])
+    shape = np.array([[4.0, 3.0, 1.0], [3.0, 9.0, 2.0], [1.0, 2.0, 6.0]]) * 1e-4
+    source = {
+        "name": "rubber",
+        "parameters": [{"name": name, "value": value} for name, value in
+                       zip(["glassy_modulus", "alpha", "beta"], values, strict=True)],
+        "covariance": (shape * np.outer(values, values)).tolist(),
+    }  # fmt: skip
+    one, two = (
+        _propagate(case, {"impact.velocity": "2%"}, source, 1024, ["cor"], 1, None, corrected)
+        for corrected in (True, False)
+    )
+    assert one.fresh == 20
+    assert np.allclose(one.table.total, two.table.total, atol=TAILS * ACCURATE)
+    assert np.allclose(one.table.swing, two.table.swing, rtol=1e-3)
+
+
+def test_an_exact_impact(tmp_path, capsys):
+    """The report, the JSON and the attributes say from how many exact impacts, and how good."""
+    words = [str(EXAMPLES / "sls_exact.nml"), "--vary", "rubber.beta=5%", "--vary",
+             "impact.velocity=2%", "--quantity", "cor_sphere,max_force", "--samples", "512",
+             "--output", str(tmp_path)]  # fmt: skip
+    _command.call("uncertainty", words)
+    said = capsys.readouterr().out
+    number = re.search(r"correction from (\d+) exact impacts, 20 of which it does not know", said)
+    document = json.loads((tmp_path / "sls_exact_uncertainty.json").read_text())
+    assert document["solved"] == int(number[1]) == 52 and document["fresh"] == 20
+    assert document["samples"] == 512
+    for one in document["quantities"].values():
+        assert 0 < one["correction"] < ACCURATE
+    # samples that are solved
+    case = vcor.read(EXAMPLES / "sls_exact.nml")
+    vary = {"rubber.beta": "5%", "impact.velocity": "2%"}
+    drawn = Drawn.of(case, vary, None, 512, ["cor_sphere", "max_force"], 1)
+    found = sampled([drawn.plan], drawn.quantities, 1, None)
+    rows = [0, 100, 200, 300]
+    solved = case._solve(list(vary), drawn.plan.place(drawn.plan.z[rows]), drawn.quantities, 0)[0]
+    deviation = found.found[0].std(axis=0)
+    assert (np.abs(found.found[0][rows] - solved) < TAILS * ACCURATE * deviation).all()
+
+
+def test_files_of_exact_bands_say_how(tmp_path, capsys):
+    case = vcor.read(EXAMPLES / "sls_exact.nml").text()
+    (tmp_path / "a.nml").write_text(
+        case + "&sweep parameter = 'impact.velocity', values = 0.2, 0.3, 0.4 /\n"
+    )
+    words = [str(tmp_path / "a.nml"), "--vary", "rubber.beta=5%", "--quantity", "cor_sphere",
+             "--samples", "256", "--output", str(tmp_path)]  # fmt: skip
+    _command.call("uncertainty", words)
+    said = capsys.readouterr().out
+    (said,) = (line for line in said.splitlines() if line.startswith("by thin mechanics"))
+    assert "with a correction from 52 exact impacts" in said
+    assert f"# samples: {said}\n" in (tmp_path / "a_uncertainty.csv").read_text()
+    assert vcor.open(tmp_path / "a_uncertainty.h5").attrs["samples"] == said
+    assert len(pd.read_csv(tmp_path / "a_uncertainty.csv", comment="#")) == 3
+
+
+@pytest.mark.skipif("VCOR_ALL_TESTS" not in os.environ, reason="takes long: scripts/test_long.sh")
+@pytest.mark.parametrize(("file", "keys"), [
+    (EXAMPLES / "sls_exact.nml", ("beta", "glassy_modulus")),
+    (EXAMPLES / "rubber_pad_on_steel.nml", ("equilibrium_modulus", "moduli(3)")),
+])  # fmt: skip
+def test_exact_indices_are_those_of_solved_samples(file, keys):
+    case = vcor.read(file)
+    case["contact.mechanics"] = "exact"
+    vary = {"impact.velocity": "3%", "plate.thickness": "3%"} if "pad" in file.name else {
+        "impact.velocity": "3%", "plate.half_thickness": "3%"}  # fmt: skip
+    vary |= {f"rubber.{key}": "10%" for key in keys}
+    one, two = (
+        _propagate(case, vary, None, 1024, QUANTITIES, 1, None, corrected)
+        for corrected in (True, False)
+    )
+    assert one.fresh == 20 and one.solved < 200
+    for key in ("first", "total"):
+        assert (np.abs(one.table[key] - two.table[key]) <= two.table[f"{key}_error"] + 1e-3).all()
+    off = np.abs(one.table.percentiles - two.table.percentiles)
+    assert (off <= TAILS * ACCURATE * two.table.material).all()
+
+
+def test_paper_cases_keep_their_samples():
+    """Cheap mechanics are solved at every sample."""
+    found = vcor.propagate(PAPER / "sls.nml", {"rubber.beta": "5%"}, samples=128)
+    assert found.solved == found.samples and found.fresh == 0 and "correction" not in str(found)
