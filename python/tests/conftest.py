@@ -8,12 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from hypothesis import HealthCheck, settings
-
-# The same examples in each run, and nothing written next to the sources
-settings.register_profile("vcor", deadline=None, database=None, derandomize=True,
-                          suppress_health_check=list(HealthCheck))  # fmt: skip
-settings.load_profile("vcor")
 
 ROOT = Path(__file__).parents[2]
 PAPER = ROOT / "examples" / "paper"
@@ -21,23 +15,14 @@ SWEEPS = ROOT / "examples" / "sweeps"
 
 
 @pytest.fixture
-def program(tmp_path):
-    """Run the program in an empty folder; its exit code, output and line of error."""
+def program(tmp_path, capsys, monkeypatch):
+    """Run the program, or `vcor fit`, in an empty folder; what it prints, or its line of error."""
+    shell = Shell(tmp_path, capsys, monkeypatch)
 
     def run(*words, code=0):
-        # as installed, where PATH has vcor-fit
-        call = [os.environ["VCOR"]]
-        if words[0] == "fit":
-            call, words = [sys.executable, "-c", "from vcor._command import fit; fit()"], words[1:]
-        done = subprocess.run(
-            [*call, *map(str, words)],
-            cwd=tmp_path,
-            capture_output=True,
-            encoding="utf-8",
-            check=False,
-        )
-        assert done.returncode == code, done.stderr
-        return done.stdout if code == 0 else done.stderr
+        done = shell(*words)
+        assert done.code == code, done.err
+        return done.out if code == 0 else done.err
 
     return run
 

@@ -27,9 +27,9 @@ import numpy as np
 
 import vcor
 from vcor.exchange.card_formats import FORMATS, UNITS, Card
+from vcor.material_files import IMPACT
 from vcor.materials.data import read_data
 from vcor.materials.observations import observations
-from vcor.sources import IMPACT
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "cli"))

@@ -4,12 +4,11 @@ import dataclasses
 
 import pytest
 from conftest import PAPER
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from properties import example, given, settings, st
 
 import vcor
 from vcor.exchange.card_formats import FORMATS, UNITS, Card
-from vcor.sources import IMPACT
+from vcor.material_files import IMPACT
 
 #: Rounding of the 14 to 15 digits of a card; the long-time modulus is a difference of some of them
 ROUNDING = 1e-12

@@ -4,8 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from properties import HealthCheck, given, settings, st
 
 import vcor
 from vcor.materials.noise import Noise
@@ -120,15 +119,27 @@ def test_rounded_data_that_determine_it_give_the_truth(model, seed):
         (["rubber.wlf_c1", "rubber.wlf_c2"], WLF),
     ],
 )
-@pytest.mark.parametrize("digits", [None, 3])
-def test_one_temperature_fixes_one_constant_of_a_shift(free, shift, digits):
+@pytest.mark.parametrize(("digits", "count"), [(None, 10), (3, 5)])
+def test_one_temperature_fixes_one_constant_of_a_shift(free, shift, digits, count):
     fields = {"sphere": "", "waves": "none", "impact": shift["impact"]}
     case = vcor.Case(CASE.format(material=MODELS["prony"] + shift["shift"], **fields))
     truth = {address: float(np.atleast_1d(case[address])[0]) for address in free}
-    data, *_ = measured(case, free, ["cor"], digits, 1, n=10)
+    data, *_ = measured(case, free, ["cor"], digits, 1, n=count)
     for address, value in truth.items():
         case[address] = value * (1.004 if "reference" in address else 0.8)
     with pytest.raises(vcor.NumericalError, match="do not determine"):
+        vcor.identify(case, data, free)
+
+
+@pytest.mark.parametrize("kelvin", [285.0, 310.0])
+def test_a_shift_is_not_determined_to_either_side_of_its_reference(kelvin):
+    """Few digits and few data: the search ends far from the guess, from where E seems limited."""
+    fields = {"sphere": "", "waves": "none", "impact": f", temperature = {kelvin}"}
+    case = vcor.Case(CASE.format(material=MODELS["prony"] + ARRHENIUS["shift"], **fields))
+    free = ["rubber.reference_temperature", "rubber.activation_energy"]
+    data, *_ = measured(case, free, ["cor"], 3, 0, n=3 if kelvin < 300 else 5)
+    case[free[0]], case[free[1]] = 299.3, 4.8e4
+    with pytest.raises(vcor.NumericalError, match="do not determine rubber.reference_temperature"):
         vcor.identify(case, data, free)
 
 

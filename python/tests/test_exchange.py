@@ -393,9 +393,13 @@ def test_the_head_of_a_table_says_what_strikes_and_whether_its_weight_acts():
     ],
 )
 def test_what_becomes_of_the_output(shell, code, said, tmp_path):
-    (tmp_path / "c.nml").write_text(BEADS.read_text().replace("title = '", "title = 'ä "))
-    command = f'"{sys.executable}" -c "from vcor._command import export; export()" '
-    command += "c.nml --for rebound --velocities 0.1:1:4"
+    (tmp_path / "c.nml").write_text(
+        "&material name = 'gümmi', model = 'sls', density = 1100, poisson_ratio = 0.45,\n"
+        "glassy_modulus = 1.5e7, alpha = 300, beta = 1200 /\n"
+    )
+    # of the commands the one that starts soonest
+    command = f'"{sys.executable}" -c "from vcor._command import card; card()" '
+    command += "c.nml --for ansys"
     done = subprocess.run(["bash", "-c", shell.format(command)], cwd=tmp_path, capture_output=True,
                           text=True, check=False)  # fmt: skip
     assert (done.returncode, done.stderr) == (code, said and f"vcor: error: {said}")

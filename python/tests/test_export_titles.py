@@ -10,8 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import PAPER, ROOT
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from properties import given, settings, st
 
 import vcor
 from vcor.arguments import written

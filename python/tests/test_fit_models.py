@@ -1,5 +1,7 @@
 """Fits of the models: exact data give their parameters back, and standard errors are honest."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from vcor.materials.misfit import are_alike
 from vcor.materials.prony import fit_series
 from vcor.materials.samples import Samples
 
+#: Draws of noise, of each model
+DRAWS = 40 if "VCOR_ALL_TESTS" in os.environ else 20
 TRUTH = {
     "sls": {"glassy_modulus": 15e6, "alpha": 300.0, "beta": 1200.0},
     "power_law": {"equilibrium_modulus": 2.28e6, "coefficient": 8.85e5, "exponent": 0.5},
@@ -66,15 +70,18 @@ def test_exact_data_give_the_exact_parameters(model, dynamic):
 @pytest.mark.parametrize("dynamic", [False, True])
 @pytest.mark.parametrize("model", LAWS)
 def test_the_truth_is_within_three_standard_errors(model, dynamic):
-    """Of 300 draws 2 or 3 miss; here 40 draws, and the errors are not too large either."""
+    """Of 300 draws 2 or 3 miss, and the errors are not too large either."""
     samples, truth = usual(model, dynamic), np.array(list(TRUTH[model].values()))
     missed, spread = 0, 0.0
-    for seed in range(40):
+    for seed in range(DRAWS):
         _, found = fit_law(model, {}, spoiled(samples, seed))
         distance = (found.values - truth) / found.errors
         missed += bool((np.abs(distance) > 3).any())
-        spread += distance[-1] ** 2 / 40
-    assert missed <= 2 and 0.4 < spread < 1.9
+        spread += distance[-1] ** 2 / DRAWS
+    assert missed <= 2
+    # the mean of so many squares of normal numbers has the standard deviation `wide`
+    wide = (2 / DRAWS) ** 0.5
+    assert 1 - 2.7 * wide < spread < 1 + 4.1 * wide
 
 
 @pytest.mark.parametrize(

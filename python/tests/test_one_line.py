@@ -1,7 +1,5 @@
 """Input that is damaged or blank ends in one line that can be read, with the right exit code."""
 
-import os
-import subprocess
 import sys
 import warnings
 
@@ -94,11 +92,9 @@ def test_a_blank_file_is_refused(capsys, tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["table", "fit"])
-def test_a_standard_input_that_is_closed_is_refused(name):
-    code = f"import sys; sys.stdin = None; from vcor._command import call; call('{name}', ['-'])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8",
-                          check=False, env=os.environ)  # fmt: skip
-    assert (done.returncode, done.stderr) == (4, "vcor: error: the standard input is closed\n")
+def test_a_standard_input_that_is_closed_is_refused(capsys, monkeypatch, name):
+    monkeypatch.setattr(sys, "stdin", None)
+    assert refusal(capsys, name, "-") == (4, "vcor: error: the standard input is closed\n")
 
 
 @pytest.mark.parametrize("name", ["X_Columns", "X_Dimension", "X0", "Delta_X", "Y_Unit_Label"])

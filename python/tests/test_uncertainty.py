@@ -10,8 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import PAPER, ROOT, SWEEPS
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from properties import given, settings, st
 from scipy.integrate import solve_ivp
 
 import vcor

@@ -6,6 +6,7 @@ All numbers are in SI units; results are `xarray.Dataset` objects with units in 
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from . import points
 from ._library import (
     DataRangeWarning,
     Error,
@@ -90,7 +91,17 @@ def _plot(self: Case, kind: str | None = None, **options: Any) -> "Figure":
     return made
 
 
+def _of_data(name: str) -> Any:
+    """A function of `vcor.materials.data`, which is imported with the first call."""
+
+    def call(*arguments: Any) -> Any:
+        return getattr(importlib.import_module("vcor.materials.data"), name)(*arguments)
+
+    return call
+
+
 Case.plot = _plot
+points.read, points.plain_name = _of_data("read_points"), _of_data("plain_name")
 
 
 def _page(self: Case, *, port: int | None = None) -> "Live":

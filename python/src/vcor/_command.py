@@ -161,7 +161,7 @@ MODULES = {
     "identify": "materials.identification",
     "master": "materials.master",
     "page": "page.command",
-    "plot": "plot",
+    "plot": "materials.plot_command",
     "table": "materials.table",
     "uncertainty": "uncertainty_command",
 }

@@ -288,7 +288,8 @@ def call(name: str, *arguments: Any) -> str:
     quick = (
         name in _QUICK
         or (name in _MODULI and arguments[2] <= _FEW)
-        # one point, which a loop asks for again and again
+        # one number or point, which a loop asks for again and again
+        or name == "vcor_time_factor"
         or (name == "vcor_warnings" and arguments[3] == 1)
     )
     code = function() if quick and _worker else _interruptible(function)

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from ._text import place, write
-from .plot import save
 
 
 def finish(
@@ -27,6 +26,8 @@ def finish(
             content = json.dumps(content, indent=1) + "\n"
         write(path, content if isinstance(content, bytes) else content.encode())
     if figure is not None:
+        from .plot import save
+
         paths.append(place(folder, stem, [options.format], None, []))
         save(figure, paths[-1])
     if not options.quiet:

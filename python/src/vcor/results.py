@@ -54,6 +54,11 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     """
     path = os.fspath(path)
     _check(path)
+    return read_group(path, group)
+
+
+def read_group(path: str, group: str) -> xr.Dataset:
+    """A group of a file that `open` has read before, and need not check for damage once more."""
     try:
         with h5py.File(path, "r") as file:
             attrs, found = dict(file.attrs), file.get(group)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 import os
-import re
 from pathlib import Path
 
 import h5py
@@ -13,19 +12,14 @@ import numpy as np
 import xarray as xr
 
 from ._library import Error, InputError, UsageError, printable
-from ._text import near, read_text
+from ._text import near
 from .case import Case, number
-from .materials.data import is_temperature
-from .materials.units import ZERO_C
+from .material_files import material_case
 from .results import open as open_results
+from .results import read_group
+from .units import ZERO_C
 
 Source = str | os.PathLike[str] | xr.Dataset | Case
-#: An impact on a material
-IMPACT = """
-&impact velocity = 1.0 /
-&sphere radius = 1.0, mass = 1.0, material = '{0}' /
-&plate material = '{0}', waves = 'none' /
-"""
 
 
 class Result:
@@ -60,7 +54,7 @@ class Result:
         """A group of the file with some columns; refused if there is none."""
         if name not in self.groups:
             raise InputError(f"{self.path}: there is no {what} in this file")
-        found = self._held[name] if self._held else open_results(self.path, name)
+        found = self._held[name] if self._held else read_group(self.path, name)
         for column in columns:
             if column not in found:
                 raise InputError(f"{self.path}: there is no '{column}' in '{name}' of this file")
@@ -93,28 +87,17 @@ class Result:
         return self.summary[name]
 
 
+def is_temperature(name: str) -> bool:
+    """Whether a quantity or an address is a temperature, which figures may show in °C."""
+    return "temperature" in name.rpartition(".")[2]
+
+
 def _in_celsius(data: xr.Dataset) -> xr.Dataset:
     """The same with swept temperatures in degrees Celsius."""
     swept = {name: at for name, at in data.coords.items() if is_temperature(str(name))}
     return data.assign_coords(
         {name: (at - ZERO_C).round(9).assign_attrs(units="°C") for name, at in swept.items()}
     )
-
-
-def material_case(
-    path: str | os.PathLike[str], material: str | None = None
-) -> tuple[Case, list[str], bool]:
-    """A case, or &material groups with an impact on one of them; names, whether it has its own."""
-    text = read_text(path)
-    quoted = r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\""
-    # what is in a comment or in another text is none
-    found = re.finditer(rf"(?i)!.*|\bname\s*=\s*({quoted})|{quoted}", text)
-    names = [one[1][1:-1].replace(one[1][0] * 2, one[1][0]) for one in found if one[1]]
-    if not names:
-        raise InputError(f"{os.fspath(path)}: there is no material with a name in this file")
-    has_impact = re.search(r"(?im)^\s*&impact\b", text) is not None
-    text += "" if has_impact else IMPACT.format((material or names[0]).replace("'", "''"))
-    return Case(text, name=os.fspath(path)), names, has_impact
 
 
 def _moduli_of(path: str) -> dict[str, xr.Dataset]:

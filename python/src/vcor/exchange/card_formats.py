@@ -15,7 +15,7 @@ from typing import NoReturn
 from .._library import InputError, UsageError, printable
 from .._text import option
 from ..arguments import written
-from ..materials.units import GAS
+from ..units import GAS
 
 #: Sizes of the units of length, mass and time [m], [kg], [s]
 UNITS = {
@@ -236,6 +236,7 @@ class Source:
     celsius: bool = False
 
     def __post_init__(self) -> None:
+        """Split the lines, and take name, units and scale of temperatures of the head of vcor."""
         # no other character ends a line of these programs
         self.lines = [(i, line.rstrip()) for i, line in enumerate(self.text.split("\n"), 1)]
         made = head_of(self.text)
@@ -457,6 +458,7 @@ def _write_abaqus(card: Card) -> list[str]:
 
 
 def _read_abaqus(source: Source) -> Card:
+    """The material of *MATERIAL: *ELASTIC or *HYPERELASTIC, *VISCOELASTIC as PRONY, *TRS."""
     blocks = []
     for i, head, lines in source.blocks("*", ("**",)):
         # a line of keywords goes on after a comma at its end
@@ -634,6 +636,7 @@ def _write_mpl(card: Card) -> list[str]:
 
 
 def _read_ansys(source: Source) -> Card:
+    """The material of commands MP and TB: PRONY with its SHIFT, and elastic constants."""
     properties: dict[tuple[str, str], Line] = {}
     tables: dict[tuple[str, str], tuple[int, float, list[str]]] = {}
     current: list[str] = []
@@ -795,6 +798,7 @@ def _write_one_term(card: Card) -> list[str]:
 
 
 def _read_lsdyna(source: Source) -> Card:
+    """The material of *MAT_GENERAL_VISCOELASTIC (076) or *MAT_VISCOELASTIC (006)."""
     cards, others, long = [], [], False
     for i, head, lines in source.blocks("*", ("$",)):
         word = (head.upper().split() or [""])[0]
@@ -861,6 +865,7 @@ def _one_term(
 
 
 def _write_ogden(card: Card) -> list[str]:
+    """Lines of /MAT/LAW42, linear by one term of exponent 2, with the terms in /VISC/PRONY."""
     g, k = card.shear, card.bulk
     return [
         "/MAT/LAW42/1",
@@ -893,6 +898,7 @@ def _write_boltzman(card: Card) -> list[str]:
 
 
 def _read_openradioss(source: Source) -> Card:
+    """The material of /MAT/LAW34, one Maxwell term, or of /MAT/LAW42 with /VISC/PRONY."""
     blocks: dict[tuple[str, str, str], tuple[int, list[Line]]] = {}
     for i, head, lines in source.blocks("/", ("#", "$")):
         kind, law, number, *_ = [*head.upper().split("/"), "", ""]
@@ -960,6 +966,7 @@ def _write_comsol(card: Card) -> list[str]:
 
 
 def _read_comsol(source: Source) -> Card:
+    """The material of a table of branches, with elastic constants and a shift in its remarks."""
     given = {key: (i, value) for i, text in source.lines
              for key, value in re.findall(r"^%\s*(\w+) = (\S+)$", text)}  # fmt: skip
     values = {key: source.number(*line) for key, line in given.items() if key != "shift"}

@@ -17,9 +17,9 @@ from .._library import InputError, NumericalError, UsageError, numbers, whole, w
 from .._text import option
 from ..arguments import MOST_POINTS
 from ..case import Case, number
-from ..sources import IMPACT, material_case
+from ..material_files import IMPACT, material_case
 from .card_formats import FORMATS, UNITS, Card, Source, Terms, head_of
-from .codes import TARGETS
+from .targets import TARGETS
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)

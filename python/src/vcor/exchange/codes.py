@@ -10,11 +10,9 @@ import contextlib
 import math
 import os
 import re
-import tomllib
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from string import Template
 from typing import Any
 
@@ -37,8 +35,8 @@ from .._library import (
 )
 from ..case import Case, as_case, number, radius_of
 from .contact_laws import ACCURACY, LAWS, Twin
+from .targets import TARGETS, TEMPLATES, Target
 
-TEMPLATES = Path(__file__).with_name("templates")
 #: Shapes with a radius
 SPHERES = ("sphere", "true_sphere")
 #: Columns that an export needs
@@ -57,24 +55,8 @@ STEPS, RUNS = 400, 3
 COMMENTS = {".c": "// ", ".cpp": "// ", ".dat": "! ", ".xml": ""}
 
 
-@dataclass(frozen=True)
-class Target:
-    """A program that takes e: an entry of templates/programs.toml."""
-
-    name: str
-    files: Sequence[str]
-    laws: Sequence[Mapping[str, Any]] = ()
-    notes: Sequence[str] = ()
-    run: str = ""
-    #: How it takes pairs of several types: the law of each ("pairs"), its e with a modulus of each
-    #: type ("types"), a table of all ("table"); else why it does not
-    mixture: str = ""
-
-
 #: What is written for a law, its parameters, and numbers for the templates
 Fit = tuple[str, Twin, dict[str, str]]
-_PROGRAMS = tomllib.loads(_text.read_text(TEMPLATES / "programs.toml"))
-TARGETS = {name: Target(name, **keys) for name, keys in _PROGRAMS.items()}
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,13 @@ from numpy.typing import ArrayLike
 
 from .. import _command
 from .._library import UsageError
+from .._outputs import finish
 from ..arguments import listed
 from ..case import Case, as_case, read_cases
-from .codes import MEANING, TARGETS, Export, export_pair
+from .codes import MEANING, Export, export_pair
 from .mixture import Mixture, export_mixture
 from .sizes import cases_of
+from .targets import TARGETS
 
 Source = Case | str | os.PathLike[str]
 
@@ -126,6 +128,4 @@ def _work(options: argparse.Namespace) -> None:
         return
     of_pair = isinstance(found, Export)
     stem = f"{Path(options.case[0]).stem if of_pair else 'mixture'}_{found.target}"
-    from .._outputs import finish
-
     finish(options, "\n".join(found.header), stem, found.texts, found.figure())

@@ -28,11 +28,8 @@ from .codes import (
     OF_WALLS,
     RUNS,
     STEPS,
-    TARGETS,
-    TEMPLATES,
     FileTemplate,
     Fit,
-    Target,
     base_of,
     checked,
     comment,
@@ -46,6 +43,7 @@ from .codes import (
     solved,
 )
 from .contact_laws import Twin
+from .targets import TARGETS, TEMPLATES, Target
 
 #: Relative error of masses: reduced masses are often given with few digits
 ROUNDING = 1e-3

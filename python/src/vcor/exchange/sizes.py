@@ -14,7 +14,7 @@ from .. import _text
 from .._library import InputError, UsageError
 from ..arguments import value_of
 from ..case import Case, read
-from ..materials.units import examples, size
+from ..units import examples, size
 from .mixture import mixture
 
 #: Columns of the table

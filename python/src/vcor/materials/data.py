@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from .. import _library
 from .._library import Floats, InputError, UsageError
 from .._text import option
+from ..units import ZERO_C
 from .grid import read_grid
 from .labels import unified
 from .names import read_head
 from .reader import SAME_TEMPERATURE, Reader, refuse_all_but_moduli
 from .select import Where
 from .tables import REPLICATES, Choice
-from .units import ZERO_C
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -313,14 +313,19 @@ def kelvin(text: str, what: str) -> float:
     return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
 
 
-def is_temperature(name: str) -> bool:
-    """Whether a quantity or an address is a temperature, which figures may show in °C."""
-    return "temperature" in name.rpartition(".")[2]
-
-
 def plain_name(text: str) -> str:
     """Name of a quantity as vcor has it, whatever it is called."""
     return text if text in _library.columns(0) else read_head(text).key or text
+
+
+def read_points(
+    files: Sequence[str | os.PathLike[str]], columns: Columns, units: Units, where: Where
+) -> list[pd.DataFrame]:
+    """Files of measured points that a figure shows over results."""
+    choice = Choice(columns, units, len(files), where)
+    data = [read_data(one, choice, whole=False) for one in files]
+    choice.refuse_unseen("the files have")
+    return data
 
 
 def add_data_options(parser: argparse.ArgumentParser) -> None:

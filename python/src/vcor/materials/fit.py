@@ -20,6 +20,7 @@ from .._text import command, document, near, option
 from ..arguments import scalars, written
 from ..case import Case
 from ..material import Material
+from ..units import ZERO_C, size
 from .data import curves, read_data, tensile
 from .laws import LAWS, fit_law
 from .master import curve_of, of_curves
@@ -27,7 +28,6 @@ from .names import read_head
 from .prony import MOST_TERMS, fit_series
 from .reader import refuse_all_but_moduli
 from .samples import Samples, one_thread
-from .units import ZERO_C, size
 
 if TYPE_CHECKING:
     import pandas as pd

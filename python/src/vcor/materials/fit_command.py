@@ -101,6 +101,7 @@ class Sampled:
         return f" at {self.case['impact.temperature']:.7g} K"
 
     def _sample(self, options: argparse.Namespace) -> Samples:
+        """Moduli of the material from --from to --to, or around the contact time."""
         time = self.contact_time
         if not time > 0 and None in (options.first, options.last):
             raise UsageError(

@@ -153,6 +153,7 @@ def _narrow(grid: Grid) -> Grid:
 
 
 def _bytes(name: str) -> bytes:
+    """What a file holds, or the standard input for `-`; refused beyond MOST_BYTES."""
     try:
         if name == "-" and sys.stdin is None:
             raise FileError("the standard input is closed")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
+from ..units import quantities_of
 from .names import CUES, Head, is_function, plain
-from .units import quantities_of
 
 #: By SI unit: what a column of a table of impacts may be
 _OF_IMPACTS = {

@@ -56,6 +56,8 @@ from .tables import Choice
 SHARP, FINEST, COARSEST = 1e-5, 1e-9, 1e-6
 #: Better fits that profiles may find one after the other
 BETTER = 5
+#: Rise of the sum of squares that no data see: a tenth of a standard error
+ALIKE = 0.01
 #: Probability of a larger misfit below which the model does not follow the data
 FOLLOWS = 1e-3
 #: Mean square of misfits, in their errors, below which rounding and the solution explain them
@@ -191,7 +193,7 @@ def _deserved(blocks: Sequence[Block], errors: Mapping[str, float]) -> float:
 def _determined(problem: Problem, x: Floats, chi2: float) -> tuple[Fit, list[list[Interval]]]:
     """The best fit and the intervals of all parameters; refused if the data do not limit one."""
     for _ in range(BETTER):
-        best = Fit(problem, x, chi2, *problem.derivatives(x))
+        best = _beside_guess(Fit(problem, x, chi2, *problem.derivatives(x)))
         try:
             if (free := best.free()) is not None:
                 raise NumericalError(not_determined(problem, x, best.lost(free)))
@@ -200,6 +202,22 @@ def _determined(problem: Problem, x: Floats, chi2: float) -> tuple[Fit, list[lis
             x, chi2 = problem.settle(better.x)
     raise NumericalError(f"{problem.case.name}: the sum of squares has many minima, and the best "
                          "of them was not found: give a guess that is closer")  # fmt: skip
+
+
+def _beside_guess(best: Fit) -> Fit:
+    """A fit that is as good with a doubtful parameter at its first guess, or the same.
+
+    A search that follows no slope may have ended anywhere, such as at a reference temperature so
+    high that nothing depends on it any more. From there data seem to limit what they do not.
+    """
+    problem = best.problem
+    for i in best.doubtful():
+        start = best.x.copy()
+        start[i] = problem.guess[i]
+        x, chi2 = problem.minimize(start, [j for j in range(len(start)) if j != i])
+        if chi2 < best.chi2 + ALIKE:
+            return Fit(problem, x, chi2, *problem.derivatives(x))
+    return best
 
 
 def _result(

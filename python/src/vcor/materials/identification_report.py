@@ -12,10 +12,10 @@ import numpy as np
 from .. import _library
 from .._library import printable
 from ..case import number
+from ..units import TURN, ZERO_C
 from .advice import percent
 from .identified import Identified
 from .observations import COEFFICIENTS, IMPACT, materials_of
-from .units import TURN, ZERO_C
 
 #: Data that are shown at most
 _MOST = 20

@@ -7,7 +7,7 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-from .units import size
+from ..units import size
 
 #: Dashes that a word processor writes for a hyphen; a minus sign (U+2212) is never one
 _DASHES = dict.fromkeys(range(0x2010, 0x2016), "-")

@@ -22,13 +22,14 @@ from numpy.typing import NDArray
 
 from .. import _command, _text
 from .._library import Floats, InputError, NumericalError, UsageError, within
+from .._outputs import finish
 from .._text import command, option
+from ..units import TURN, ZERO_C
 from .data import Columns, Units, add_data_options, columns_option, kelvin, read_moduli, together
 from .samples import one_thread
 from .select import Where
 from .shifting import FOLLOWS, Curve, Law, laws_of, steps_of
 from .tables import Choice
-from .units import TURN, ZERO_C
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -397,8 +398,6 @@ def _work(options: argparse.Namespace) -> None:
     }
     report = f"{found}\nshift of a &material, which vcor fit {stem}.csv takes over:\n"
     report += "".join(f"   {pair}\n" for pair in pairs)
-    from .._outputs import finish
-
     finish(options, report, stem, texts, found.figure())
 
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .. import _library
+from ..units import plain_unit, quantities_of, size, suffix_unit
 from .labels import TEMPERATURE, read_label, unified
-from .units import plain_unit, quantities_of, size, suffix_unit
 
 
 @dataclass(frozen=True)

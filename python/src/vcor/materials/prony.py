@@ -124,6 +124,7 @@ class Series(Problem):
                 self.__dict__.update(other.__dict__)
 
     def _iterate(self, tolerance: float, most: int) -> None:
+        """Steps of Gauss and Newton in the logarithms of times and moduli, at most so many."""
         n, size = len(self.times), self.samples.softest
         low, high = (
             math.log(SOFTEST * self.samples.data.min()),

@@ -12,6 +12,7 @@ import numpy as np
 
 from .._library import Floats, InputError, UsageError, printable
 from .._text import near, option
+from ..units import ZERO_C, examples, plain_unit, quantities_of, size
 from . import hints
 from .grid import (
     Grid,
@@ -26,7 +27,6 @@ from .labels import COLDEST, Label
 from .names import ASIDE, COMPUTED, QUANTITIES, REMARKS, Head, is_address, plain
 from .select import words_of
 from .tables import Choice, Column, Table, groups_of, quantities, tables_of
-from .units import ZERO_C, examples, plain_unit, quantities_of, size
 
 if TYPE_CHECKING:
     import pandas as pd

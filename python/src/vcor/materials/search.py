@@ -21,8 +21,9 @@ from .observations import Block, Impacts, velocity_of
 
 #: Step of the logarithms of parameters for derivatives of fourth order, which errors are made of
 STEP = 0.02
-#: The same for those of first order, which lead downhill
-STRIDE = 1e-3
+#: The same for those of first order, which lead downhill, the largest part of a datum that such a
+#: step may change, and how often it is shortened for that
+STRIDE, MOVED, SHORTER = 1e-3, 0.05, 3
 #: Points that a fit may start from, and how many of them do
 STARTS, REFINED = 64, 4
 #: Time of the starts that is said, as the rest takes long then [s]
@@ -62,6 +63,9 @@ class Problem:
         self.speeds = next((block.velocity for block in self.impacts), own)
         self.quantity = [name for block in blocks for name in block.quantity]
         self.value = np.concatenate([block.value for block in blocks])
+        scale = np.concatenate([block.scale for block in blocks])
+        #: Size of each datum
+        self.scale = np.where(scale > 0, scale, math.inf)
         self.noise = Noise(blocks, errors)
         values = np.array([number(case, address) for address in free])
         if not (values > 0).all():
@@ -170,14 +174,22 @@ class Problem:
 
         return slopes(logarithms, len(x), STEP)
 
-    def downhill(self, x: Floats, which: Sequence[int]) -> Floats:
+    def downhill(self, x: Floats, which: list[int]) -> Floats:
         """Derivatives of the residuals by some of the parameters, one-sided: good for descent."""
-        steps = STRIDE * np.eye(len(x))[list(which)]
+        here, steps = self.value + self.sigma * self.residuals(x), STRIDE * np.eye(len(x))[which]
         found = self.predict(x + steps)
         if np.isnan(found).any():
             steps = -steps
             found = self.predict(x + steps)
-        change = (found - self.value) / self.sigma - self.residuals(x)
+        # the data follow no line as far as that, or have no results, where the effects of two
+        # parameters all but cancel: of a shift's activation energy beside its reference temperature
+        for _ in range(SHORTER):
+            moved = np.nan_to_num((np.abs(found - here) / self.scale).max(axis=1), nan=math.inf)
+            if not (far := moved > MOVED).any():
+                break
+            steps[far] *= np.fmax(MOVED / 2 / moved[far, None], MOVED)
+            found[far] = self.predict(x + steps[far])
+        change = (found - here) / self.sigma
         slope: Floats = np.nan_to_num(change / steps.sum(axis=1)[:, None]).T
         return slope
 

@@ -20,7 +20,7 @@ from scipy.optimize import least_squares, minimize_scalar
 
 from .._library import Error, Floats, NumericalError
 from ..case import Case
-from .units import ZERO_C
+from ..units import ZERO_C
 
 #: Degree of the polynomial in the logarithm of frequency that two curves share
 DEGREE = 4

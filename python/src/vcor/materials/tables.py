@@ -13,6 +13,7 @@ import numpy as np
 from .. import _library
 from .._library import InputError, UsageError
 from .._text import option
+from ..units import plain_unit, size
 from .grid import Grid, Row, is_missing, is_number, number, resolution, split_line
 from .labels import UNLABELLED, Label, read_label
 from .names import (
@@ -26,7 +27,6 @@ from .names import (
     read_head,
 )
 from .select import Where, conditions
-from .units import plain_unit, size
 
 #: Logarithm of a factor by which replicates differ at most: specimens of a material scatter by some
 #: percent, while moduli at temperatures between which it relaxes differ by more than this

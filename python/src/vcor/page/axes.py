@@ -12,7 +12,7 @@ import numpy as np
 from .._library import Floats, UsageError
 from .._text import option
 from ..case import Case
-from ..materials.units import examples, size
+from ..units import examples, size
 
 #: Most numbers that one page varies
 MOST = 3
@@ -85,6 +85,7 @@ def axes_of(case: Case, vary: Mapping[str, str]) -> list[Axis]:
 
 
 def _axis(case: Case, address: str, text: str) -> Axis:
+    """The axis of ADDRESS=FROM:TO, in the unit that the ends have; refused if it is none."""
     column = case._describe(address)
     si = column.unit
     not_one = UsageError(f"{address}: found a key that is not one number, expected the address of "

@@ -22,7 +22,7 @@ from .. import _library
 from .._library import InputError, UsageError, __version__, whole
 from .._text import option, place, write
 from ..case import Case, as_case, read
-from ..sources import material_case
+from ..material_files import material_case
 from .axes import Axis, axes_of
 from .table import Table, solve
 

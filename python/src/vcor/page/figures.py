@@ -18,7 +18,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from .._library import Floats
-from ..materials.units import TURN, size
+from ..units import TURN, size
 from .answer import Answer, Curve, Span, seen
 from .document import LINES
 from .keys import Key

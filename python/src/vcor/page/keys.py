@@ -14,7 +14,7 @@ from typing import Any
 from .. import _library
 from .._library import UsageError
 from ..case import Case
-from ..materials.units import examples, size
+from ..units import examples, size
 
 #: Units of a laboratory by SI unit; all others are SI units
 _USUAL = {"m": "mm", "K": "C", "Pa": "MPa", "kg": "g"}

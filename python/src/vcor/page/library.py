@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..case import Case, read
-from ..sources import material_case
+from ..material_files import material_case
 
 #: In an installed package, and beside its source
 _FOLDERS = (

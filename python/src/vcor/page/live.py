@@ -33,7 +33,7 @@ from bokeh.models import (
 from .. import _library
 from .._library import Error, InputError, NumericalError, UsageError
 from ..case import Case
-from ..sources import material_case
+from ..material_files import material_case
 from . import measured, take_away
 from .answer import (
     Answer,

@@ -27,7 +27,7 @@ from tornado.ioloop import IOLoop
 from .._library import Error, FileError, InputError, UsageError, whole
 from .._text import option
 from ..case import Case, read
-from ..sources import material_case
+from ..material_files import material_case
 from .answer import Span
 from .axes import axes_of
 from .library import offered

@@ -25,7 +25,7 @@ from .._library import Error, NoResultWarning, NumericalError, ValidityWarning
 from .._text import option
 from ..arguments import threads_of
 from ..case import Case, number
-from ..materials.units import size
+from ..units import size
 from .axes import Axis
 
 #: Points along each axis by the number of axes: the fewest, and the most, for which there is room
