@@ -131,10 +131,10 @@ contains
          ! x^n, and its rise to the next spring
          at = raised(x(i), n)
          rise = raised(x(i + 1), n) - at
+         ! approach without dents
+         here = compression(i) + dent(i)
+         slope = (compression(i + 1) - here)/rise
          if (allocated(self%past) .and. i >= touched) then
-            ! approach without dents
-            here = compression(i) + dent(i)
-            slope = (compression(i + 1) - here)/rise
             self%radius = root(at - here/slope, n)
             self%grows = self%radius >= self%before
          end if
