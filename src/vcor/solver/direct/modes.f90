@@ -6,8 +6,7 @@
 !>
 !> with the exponential of the matrix of the differential equations of state and force. A mode that
 !> the steps do not resolve follows the force as a spring: left undamped, it would ring with the
-!> corners of the parabolas, and make a sphere hop from node to node. So do modes that stand for
-!> many: these soon ring out of step, and a few in their place would ring in step.
+!> corners of the parabolas, and make a sphere hop from node to node.
 module vcor_solver_direct_modes
    use vcor_impact_structure, only : state_of_modes_t, vibration_t
    use vcor_kinds, only : wp
@@ -67,8 +66,8 @@ contains
          self%before(modes, parts), matrix(parts + 3, parts + 3), answer(parts, 3))
       do n = 1, modes
          ! those of a material that relaxes creep, and are damped
-         if ((sqrt(vibration%square(n))*dt > fastest .or. n > modes - vibration%lumped) &
-             .and. parts == 2 .and. vibration%damping(n)**2 < vibration%square(n)) then
+         if (sqrt(vibration%square(n))*dt > fastest .and. parts == 2 &
+             .and. vibration%damping(n)**2 < vibration%square(n)) then
             self%a(n, :, :) = 0.0_wp
             self%start(n, :) = 0.0_wp
             self%before(n, :) = 0.0_wp
