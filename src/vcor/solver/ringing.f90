@@ -36,8 +36,6 @@ module vcor_solver_ringing
       logical, allocatable :: followed(:)
       !> Number of modes that can be resolved: each of the others stands for many
       integer :: modes = 0
-      !> Flexibility over the square of the frequency of those that stand for many [m s2/N]
-      real(wp) :: inertia = 0.0_wp
       !> Time scale of the contact [s]
       real(wp) :: time_scale = 0.0_wp
       !> Longest duration of a panel of each map [s]; 0: not yet found
@@ -48,7 +46,6 @@ module vcor_solver_ringing
       procedure :: added
       procedure :: accept
       procedure :: velocity_errors
-      procedure :: velocity_of_inertia
       procedure, private :: deflection
       procedure :: add_errors
    end type ringing_t
@@ -74,7 +71,6 @@ contains
       self%decay = 0.5_wp*vibration%damping
       allocate (self%amplitude(total), self%velocity(total), self%missed(self%modes), &
          source=0.0_wp)
-      self%inertia = sum(vibration%yield(self%modes + 1:)/self%frequency(self%modes + 1:)**4)
       do n = 1, total
          if (.not. self%frequency(n) > 0.0_wp) cycle
          self%amplitude(n) = impact%ringing(self%frequency(n), vibration%yield(n), time_scale)
@@ -229,18 +225,6 @@ contains
          end if
       end do
    end function velocity_errors
-
-   !> Velocity of the sphere that a contact misses where modes that stand for many follow the force
-   !> as springs, without inertia: deflection is then too large by C F''/w^2, and the impulse by
-   !> C/w^2 times the integral of S F'', for half a sine in s two masses times v0 over T^4
-   pure function velocity_of_inertia(self, impact) result(velocity)
-      class(ringing_t), intent(in) :: self
-      type(impact_t), intent(in) :: impact
-      !> Velocity [m/s]
-      real(wp) :: velocity
-
-      velocity = 2.0_wp*self%inertia*impact%mass*impact%velocity/self%time_scale**4
-   end function velocity_of_inertia
 
    !> Deflection with which the modes ring that panels have missed, and those that stand for many
    pure function deflection(self)

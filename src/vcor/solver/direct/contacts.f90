@@ -235,8 +235,7 @@ contains
          call ringing%begin(impact, vibration, impact%time_scale(), 0.0_wp)
          of_modes = ringing%velocity_errors(impact, abs(last(trajectory, col_velocity)), &
             last(trajectory, col_indentation))
-         call ringing%add_errors(impact, trajectory, of_modes(2) &
-            + ringing%velocity_of_inertia(impact), trajectory%contacts)
+         call ringing%add_errors(impact, trajectory, of_modes(2), trajectory%contacts)
       end subroutine set_errors
    end subroutine solve_contacts
 

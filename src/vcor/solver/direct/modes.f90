@@ -7,8 +7,7 @@
 !>
 !> with the exponential of the matrix of the differential equations of state and force. A mode that
 !> the steps do not resolve follows the force as a spring: left undamped, it would ring with the
-!> corners of the parabolas, and make a sphere hop from node to node. So do modes that stand for
-!> many: these soon ring out of step, and a few in their place would ring in step.
+!> corners of the parabolas, and make a sphere hop from node to node.
 module vcor_solver_direct_modes
    use vcor_impact_structure, only : state_of_modes_t, vibration_t
    use vcor_kinds, only : wp
@@ -65,18 +64,15 @@ contains
       ! largest frequency times step: a third of that of a force which alternates from node to node
       real(wp), parameter :: fastest = 1.0_wp
       real(wp) :: matrix(5, 5), unit
-      integer :: n, first_lumped
+      integer :: n
 
-      first_lumped = size(vibration%square) + 1
-      ! those of a material that relaxes are damped
-      if (size(vibration%rate) == 0) first_lumped = first_lumped - vibration%lumped
       call self%oscillators%make_room(size(vibration%square), 2)
       call self%exponentials%make_room(size(vibration%rate), 1)
       self%rates = vibration%rate
       do n = 1, size(vibration%square)
          associate (square => vibration%square(n), damping => vibration%damping(n), &
                     yield => vibration%yield(n), kick => vibration%kick(n))
-            if ((sqrt(square)*dt > fastest .or. n >= first_lumped) .and. damping**2 < square) then
+            if (sqrt(square)*dt > fastest .and. damping**2 < square) then
                self%oscillators%end(n, :) = [(yield + damping*kick)/square, -kick]
                cycle
             end if
