@@ -237,6 +237,8 @@ contains
          do k = 1, size(contact%rates)
             rate = contact%rates(k)
             slower = contact%equilibrium + sum(contact%moduli, contact%rates < rate)
+            ! a fluid has nothing slower that pushes
+            if (.not. slower > 0.0_wp) cycle
             ratio = contact%moduli(k)/slower
             kick = kick + slower*ratio*(1.0_wp + ratio)/rate**5 &
                *exp(-real(n*(n + 1), wp)/(rate*panel%step%duration))
