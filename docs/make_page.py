@@ -35,6 +35,7 @@ def live(driver):
     temperature.fill("5")
     temperature.press("Enter")
     shown.get_by_text("now: impact temperature 5").wait_for()
+    shown.locator(".exact").first.wait_for()
     shown.locator("textarea").fill(LIVE_ROWS)
     shown.locator("textarea").blur()
     shown.evaluate("scrollTo(0, 0); document.getElementById('inputs').scrollTo(0, 0)")
