@@ -15,12 +15,12 @@ from vcor._command import MODULES, parser_of
 from vcor.materials.table import table
 
 ROOT = Path(vcor.__file__).parent
-#: What only commands call
-OF_COMMANDS = {"_parser", "_work", "main", "joined", "add_outputs", "add_data_options"}
+#: What only commands call, and what writes a command for a shell
+OF_COMMANDS = {"_parser", "_work", "_serve", "main", "joined", "add_outputs", "add_data_options", "commands"}
 #: Public functions whose parameters messages may name
 FUNCTIONS = [
     *(getattr(vcor, name) for name in vcor.__all__ if inspect.isfunction(getattr(vcor, name))),
-    vcor.page.make, vcor.plot.figure, table, _text.place,
+    vcor.page.make, vcor.Case.page, vcor.plot.figure, table, _text.place,
 ]  # fmt: skip
 
 

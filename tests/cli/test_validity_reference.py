@@ -150,4 +150,4 @@ def test_the_table_of_the_page():
     table = re.findall(r"^\| `(\w+)`[^|]*\| ([\d.]+) \| ([\d.e]+) \|", page, re.MULTILINE)
     found = {(name, float(low), float(high)) for name, low, high in table}
     assert found == {(name, float(low), float(high)) for name, low, high in program}
-    assert len(program) == 12
+    assert len(program) == 13

@@ -134,7 +134,7 @@ contains
       character(len=*), parameter :: at_rest = 'the plate is rigid and does not move'
       character(len=*), parameter :: bodies_without(*) = [character(len=5) :: 'block', 'rod', &
          'modes']
-      character(len=:), allocatable :: mechanics, text
+      character(len=:), allocatable :: mechanics, text, waves
       integer :: i
 
       call take(case, inputs, reading, 'plate', 'surface_radius')
@@ -152,7 +152,9 @@ contains
       inputs%base = bases(findloc(base_names == text, .true., dim=1))
       text = ''
       if (case%count('target') > 0) call case%get('target', 'body', text)
-      if (inputs%base == base_free .and. any(bodies_without == text)) then
+      call case%get('plate', 'waves', waves)
+      ! with waves the thickness is that of a free plate beside the body, which is refused
+      if (inputs%base == base_free .and. waves == 'none' .and. any(bodies_without == text)) then
          do i = 1, size(thicknesses)
             call reading%leave(case%address('plate', trim(thicknesses(i))), &
                "the surface of this body has no thickness of its own; that of a layer needs base")
