@@ -86,7 +86,7 @@ def test_what_a_method_reads(table, vcor, key, method):
 
 def test_features_that_exclude_each_other(table, vcor):
     """Each of the pairs, by a method that solves both alone."""
-    assert len(table["exclusions"]) == 8
+    assert len(table["exclusions"]) == 7
     for pair in table["exclusions"]:
         one, other = case_of(pair["one"]), case_of(pair["other"])
         both = other.replace("&contact  /", "&contact law = 'receding' /") if "law" in pair["one"] else other
