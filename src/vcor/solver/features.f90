@@ -256,26 +256,24 @@ contains
       integer :: place
 
       integer :: candidates(3), feature, i
-      logical :: can(3)
+      logical :: can(3), solved(3)
 
       candidates = [ive, merge(direct, paper, scheme == 'product'), coupled]
       place = candidates(2)
       if (method == 'ive') place = ive
       if (method == 'coupled') place = coupled
       if (method /= 'auto') return
+      ! each point of a sweep asks: the table is searched for the features that it has
+      solved = .true.
       do feature = size(methods) + 1, size(features)
          if (.not. has(feature)) cycle
          can = [(solves(candidates(i), feature), i=1, size(candidates))]
+         solved = solved .and. can
          if (count(can) /= 1) cycle
          place = candidates(findloc(can, .true., dim=1))
          return
       end do
-      do i = 1, size(candidates)
-         if (.not. all([(solves(candidates(i), feature) .or. .not. has(feature), &
-                         feature=size(methods) + 1, size(features))])) cycle
-         place = candidates(i)
-         return
-      end do
+      if (any(solved)) place = candidates(findloc(solved, .true., dim=1))
    end function method_in_use
 
    !> Name of the method in use, as a case has it
