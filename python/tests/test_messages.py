@@ -16,7 +16,8 @@ from vcor.materials.table import table
 
 ROOT = Path(vcor.__file__).parent
 #: What only commands call, and what writes a command for a shell
-OF_COMMANDS = {"_parser", "_work", "_serve", "main", "joined", "add_outputs", "add_data_options", "commands"}
+OF_COMMANDS = {"_parser", "_work", "_serve", "main", "joined", "add_outputs", "add_data_options",
+               "commands"}  # fmt: skip
 #: Public functions whose parameters messages may name
 FUNCTIONS = [
     *(getattr(vcor, name) for name in vcor.__all__ if inspect.isfunction(getattr(vcor, name))),

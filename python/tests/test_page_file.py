@@ -96,13 +96,6 @@ def test_what_is_refused(words, code, says, tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_page_without_save_is_refused(capsys):
-    with pytest.raises(SystemExit) as leaving:
-        call("page", [str(PAD), "--vary", "impact.velocity=1m/s:2m/s"])
-    assert leaving.value.code == 2
-    assert "required: --save" in capsys.readouterr().err
-
-
 def test_a_sweep_is_refused():
     with pytest.raises(vcor.InputError, match="found a &sweep group, expected a single impact"):
         page.make(ROOT / "examples/sweeps/sls_velocity.nml", {"impact.velocity": "1m/s:2m/s"})

@@ -195,7 +195,8 @@ contains
       if (.not. allocated(self%velocity)) return
       do n = 1, self%modes
          ! never more than another ringing of the same amplitude
-         if (self%followed(n) .and. self%missed(n) < 2.0_wp) self%missed(n) = min(2.0_wp, self%missed(n) &
+         if (.not. (self%followed(n) .and. self%missed(n) < 2.0_wp)) cycle
+         self%missed(n) = min(2.0_wp, self%missed(n) &
             + exp(-self%decay(n)*start)*part(map, self%frequency(n)*duration))
       end do
    end subroutine accept
