@@ -31,7 +31,7 @@ from program import FILE, NAMES, NUMERICAL, USAGE, Vcor, complaint, program
 def solved(tmp_path_factory):
     """A long sweep, and its undisturbed files in the folder ref."""
     vcor = Vcor(tmp_path_factory.mktemp("long"))
-    write_long_sweep(vcor, 1.0)
+    write_long_sweep(vcor, 1.6)
     vcor.reference = vcor("run", "case.nml", "--output", "ref")
     assert vcor.reference.code == NUMERICAL
     return vcor
