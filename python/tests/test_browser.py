@@ -3,22 +3,16 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 
 import numpy as np
 import pytest
+from chromium import launched, playwright
 from test_page_file import DROP, MATERIALS, PAD
 
 import vcor
 from vcor import page
 
-CHROMIUM = shutil.which("chromium")
-if CHROMIUM is None:
-    pytest.skip(
-        "there is no chromium: scripts/setup.sh --tests installs it", allow_module_level=True
-    )
-playwright = pytest.importorskip("playwright.sync_api")
 expect = playwright.expect
 
 FILES = [MATERIALS / f"{name}.nml" for name in ("steel", "natural_rubber", "butyl")]
@@ -53,12 +47,8 @@ def tables(pages):
 
 @pytest.fixture(scope="module")
 def browser():
-    with playwright.sync_playwright() as driver:
-        made = driver.chromium.launch(
-            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-dev-shm-usage"]
-        )
+    with launched() as made:
         yield made
-        made.close()
 
 
 @pytest.fixture

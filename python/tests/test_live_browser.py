@@ -2,21 +2,14 @@
 
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
 import time
 
 import pytest
+from chromium import launched
 from conftest import PAPER, ROOT
-
-CHROMIUM = shutil.which("chromium")
-if CHROMIUM is None:
-    pytest.skip(
-        "there is no chromium: scripts/setup.sh --tests installs it", allow_module_level=True
-    )
-playwright = pytest.importorskip("playwright.sync_api")
 
 SERVE = "from vcor._command import page; page()"
 PAD = ROOT / "examples" / "rubber_pad_on_steel.nml"
@@ -46,12 +39,8 @@ def url():
 
 @pytest.fixture(scope="module")
 def browser():
-    with playwright.sync_playwright() as driver:
-        made = driver.chromium.launch(
-            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-dev-shm-usage"]
-        )
+    with launched() as made:
         yield made
-        made.close()
 
 
 class Watched:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import os
+import re
 import shlex
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
@@ -153,6 +154,22 @@ def place(
     except OSError as error:
         raise FileError(f"{path.parent}: {error.strerror}") from None
     return path
+
+
+def values_of(case: str) -> dict[str, str]:
+    """Values of a case as it is printed, by address."""
+    found: dict[str, str] = {}
+    group = ""
+    # a list may go on in the next line
+    for line in re.sub(r",\s*\n\s+", ", ", case).splitlines():
+        if line.startswith("&"):
+            group = line[1:].strip()
+        key, mark, value = (part.strip() for part in line.partition(" = "))
+        if mark and group == "material" and key == "name":
+            group = value.strip("'").replace(" ", "_")
+        if mark:
+            found[f"{group}.{key}"] = value
+    return found
 
 
 def write(path: Path, data: bytes) -> None:

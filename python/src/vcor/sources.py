@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from ._library import Error, InputError, UsageError, printable
-from ._text import near
+from ._text import near, values_of
 from .case import Case, number
 from .material_files import material_case
 from .results import open as open_results
@@ -137,7 +137,8 @@ def legends_of(results: list[Result]) -> list[str]:
     titles = [result.title for result in results]
     if all(titles) and len(set(titles)) == len(titles):
         return titles
-    values = [_values(result.case) for result in results]
+    lines = [map(printable, result.case.splitlines()) for result in results]
+    values = [values_of("\n".join(case)) for case in lines]
     keys = [key for key in values[0] if len({one.get(key) for one in values}) > 1]
     keys = [key for key in keys if not key.startswith(("case.", "output."))]
     if 0 < len(keys) <= 3:
@@ -160,18 +161,3 @@ def _short(value: str) -> str:
     with contextlib.suppress(ValueError):
         return f"{float(value):.5g}"
     return value
-
-
-def _values(case: str) -> dict[str, str]:
-    """Addresses and values of a case as it is printed."""
-    found: dict[str, str] = {}
-    group = ""
-    for line in map(printable, case.splitlines()):
-        if line.startswith("&"):
-            group = line[1:].strip()
-        key, mark, value = (part.strip() for part in line.partition(" = "))
-        if mark and group == "material" and key == "name":
-            group = value.strip("'").replace(" ", "_")
-        if mark:
-            found[f"{group}.{key}"] = value
-    return found

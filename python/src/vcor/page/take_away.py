@@ -16,6 +16,7 @@ import numpy as np
 from .. import _library
 from .._coverage import unwarned
 from .._library import Error, InputError, __version__
+from .._text import values_of
 from ..case import Case, read
 from .answer import Span
 
@@ -75,7 +76,7 @@ def _settings(case: Case, files: Sequence[str]) -> dict[str, str] | None:
         return None
     try:
         first = read(*files)
-        wanted, start = _values(case.text()), _values(first.text())
+        wanted, start = values_of(case.text()), values_of(first.text())
         found = {address: value for address, value in wanted.items() if start.get(address) != value}
         for address, value in found.items():
             first[address] = value
@@ -86,24 +87,9 @@ def _settings(case: Case, files: Sequence[str]) -> dict[str, str] | None:
     return found
 
 
-def _values(text: str) -> dict[str, str]:
-    """Addresses and values of a case as it is printed."""
-    found: dict[str, str] = {}
-    group = ""
-    for line in re.sub(r",\s*\n\s+", ", ", text).splitlines():
-        if line.startswith("&"):
-            group = line[1:].strip()
-        key, mark, value = (part.strip() for part in line.partition(" = "))
-        if mark and group == "material" and key == "name":
-            group = value.strip("'").replace(" ", "_")
-        if mark:
-            found[f"{group}.{key}"] = value
-    return found
-
-
 def differences(case: Case, other: Case) -> list[str]:
     """Addresses at which two cases differ, those of the first one first."""
-    one, two = _values(case.text()), _values(other.text())
+    one, two = values_of(case.text()), values_of(other.text())
     found = [key for key in {**one, **two} if one.get(key) != two.get(key)]
     return [key for key in found if not key.startswith(("case.", "output."))]
 
