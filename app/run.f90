@@ -8,6 +8,7 @@ module vcor_app_run
       measures_report, mechanics_of, name_of_exact, warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_bounces, only : bounces_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
@@ -16,7 +17,7 @@ module vcor_app_run
    use vcor_io_file, only : write_stdout
    use vcor_rounded, only : short
    use vcor_text, only : integer_text
-   use vcor_io_results, only : history_table, summary_table
+   use vcor_io_results, only : bounces_table, history_table, summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_solver_type, only : light_plate
@@ -57,7 +58,7 @@ contains
       call summary%put(1, row_of(outcome))
       if (.not. allocated(error)) call warn_of_data(job%case, job%sweep%grid, &
          summary)
-      allocate (tables(merge(2, 1, job%files%history)))
+      allocate (tables(1 + count([job%files%bounces, job%files%history])))
       call summary_table(tables(1), title, completed, job%sweep%grid, summary)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
@@ -68,7 +69,9 @@ contains
          return
       end if
       call end_of(job, outcome, worker%trajectory, error)
-      if (job%files%history) call history_table(tables(2), title, completed, &
+      if (job%files%bounces) call bounces_table(tables(2), title, completed, &
+         bounces_of(worker%trajectory))
+      if (job%files%history) call history_table(tables(size(tables)), title, completed, &
          worker%problem%impact, worker%trajectory)
       call write_files(job%files, tables, files, trouble)
       if (allocated(trouble)) then
@@ -124,6 +127,14 @@ contains
          end associate
       end subroutine write_screen
    end subroutine run_impact
+
+   !> Bounces of a trajectory; none if the sphere stays at the first touch
+   pure function bounces_of(trajectory) result(bounces)
+      type(trajectory_t), intent(in) :: trajectory
+      type(bounces_t) :: bounces
+
+      if (allocated(trajectory%bounces)) bounces = trajectory%bounces
+   end function bounces_of
 
    !> First word of a text
    pure function word_of(text) result(word)

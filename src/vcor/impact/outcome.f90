@@ -2,6 +2,7 @@
 module vcor_impact_outcome
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
+   use vcor_impact_bounces, only : ends_count, ends_none, ends_rest
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
@@ -60,6 +61,13 @@ module vcor_impact_outcome
       integer :: contacts = 0
       !> Time of the last separation [s]
       real(wp) :: last_separation = none
+      !> Number of bounces; 0 without a result
+      integer :: bounces = 0
+      !> Time from first touch to the end of the last bounce, or to the touch after which the sphere
+      !> rests [s]
+      real(wp) :: bouncing_time = none
+      !> One of the `ends_*` constants of the bounces
+      integer :: bounces_end = ends_none
       !> Restitution of the sphere at the end of the first contact [-]
       real(wp) :: first_cor_sphere = none
       !> Energy left in the modes of a structure at the last separation [J]; NaN if its material
@@ -169,7 +177,11 @@ contains
       ! bodies that separate at first touch have no other quantities
       if (.not. outcome%max_indentation > 0.0_wp) return
       outcome%residual_ratio = outcome%residual_indentation/outcome%max_indentation
-      if (outcome%status == contact_resting) return
+      if (outcome%status == contact_resting) then
+         outcome%bouncing_time = 0.0_wp
+         outcome%bounces_end = ends_rest
+         return
+      end if
 
       ! impulse of the force less that of the weight
       outcome%contact_time = trajectory%state(col_time, n)
@@ -183,6 +195,14 @@ contains
          outcome%contacts = trajectory%contacts
          outcome%structure_energy = trajectory%structure_energy
          outcome%first_cor_sphere = -trajectory%first_velocity/impact%velocity
+      end if
+      outcome%bounces = 1
+      outcome%bouncing_time = outcome%last_separation
+      outcome%bounces_end = ends_count
+      if (allocated(trajectory%bounces)) then
+         outcome%bounces = trajectory%bounces%count
+         outcome%bouncing_time = trajectory%bounces%total_time
+         outcome%bounces_end = trajectory%bounces%ending
       end if
       outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
       if (impact%target%structure%exists()) outcome%cor = (trajectory%rigid_velocity &

@@ -19,7 +19,7 @@ module vcor_solver_features
    public :: unread_t, unread, why_unread, own_rule_t, own_rules, refusal_t, refusals, reads
    public :: ive, direct, paper, coupled, of_body, of_thin_plate, of_hereditary_plate, &
       of_frozen_plate, of_layer, of_viscosity, of_boltzmann, of_receding, of_eq1, of_gravity, &
-      of_second_term, of_ghost, of_paper_scheme, of_structure
+      of_second_term, of_ghost, of_paper_scheme, of_structure, of_relaxing_plate, of_bounces
 
    !> Names of the methods in the table: the schemes product and adams_bashforth of method direct
    !> are direct and paper
@@ -32,7 +32,7 @@ module vcor_solver_features
    integer, parameter :: of_body = 5, of_paper_scheme = 6, of_thin_plate = 7, &
       of_hereditary_plate = 8, of_frozen_plate = 9, of_layer = 10, of_boltzmann = 11, &
       of_receding = 12, of_eq1 = 13, of_viscosity = 14, of_gravity = 15, of_second_term = 16, &
-      of_ghost = 17, of_structure = 18
+      of_ghost = 17, of_structure = 18, of_relaxing_plate = 19, of_bounces = 20
 
    !> A feature of an impact, or of the way in which it is to be solved
    type :: feature_t
@@ -61,7 +61,9 @@ module vcor_solver_features
       feature_t('a weight', 'gravity'), &
       feature_t('the second term of the Volterra series', 'volterra_order = 2'), &
       feature_t('motion after the separation', 'continue_after_separation'), &
-      feature_t('a struck structure', '&target')]
+      feature_t('a struck structure', '&target'), &
+      feature_t('waves in a thin plate whose modulus relaxes', "waves = 'relaxing'"), &
+      feature_t('several bounces', 'bounces')]
 
    !> A feature that methods, or other features, exclude
    type :: refusal_t
@@ -98,6 +100,16 @@ module vcor_solver_features
       'continue_after_separation method waves'), &
       refusal_t([ive, 0, 0], of_paper_scheme, &
       "adams_bashforth is a scheme of method = 'direct'", 'scheme method'), &
+      refusal_t([of_body, 0, 0], of_bounces, "with waves = 'body' no dent is kept between two " &
+      //'bounces: expected bounces = 1, or other waves', 'bounces waves'), &
+      refusal_t([of_hereditary_plate, of_frozen_plate, of_relaxing_plate], of_bounces, &
+      "a plate that has a memory is not followed from bounce to bounce: expected waves = 'none' " &
+      //"or 'constant', or bounces = 1", 'bounces waves'), &
+      refusal_t([of_second_term, of_ghost, 0], of_bounces, "bounces are followed for one term of " &
+      //'the Volterra series, and with the separation: expected bounces = 1', &
+      'bounces volterra_order continue_after_separation'), &
+      refusal_t([ive, paper, coupled], of_bounces, 'bounces after the first one are followed by ' &
+      //"method = 'direct' with scheme = 'product'", 'bounces method scheme'), &
       refusal_t([ive, 0, 0], of_second_term, &
       "the second term of the Volterra series is solved by method = 'direct' only", &
       'volterra_order volterra_coefficient method'), &
