@@ -95,7 +95,7 @@ contains
          next%last_s = next%s
          call next%row%begin_pressing(impact%law, next%s, impact%velocity*dt)
          ! a row that has a dent in part does not grow in one way
-         next%grows = next%grows .and. next%row%has_one_spring()
+         next%exact_drag = next%exact_drag .and. next%row%has_one_spring()
          next%u = impact%law%u(next%s)
          next%elastic = next%row%elastic_force()
       end subroutine meet

@@ -34,6 +34,8 @@ module vcor_solver_direct_row
       !> Moduli G_k [N/m^1.5], decays exp(-l_k dt), and weights of the change of w over a step, and
       !> of that over the step before, in the lags, shape (modes)
       real(wp), allocatable, private :: modulus(:), decay(:), weight(:), bend(:)
+      !> Rates times step l_k dt, and lags of one spring before the newest step, shape (modes)
+      real(wp), allocatable, private :: phase(:), before(:)
       !> Number of springs
       integer :: count = 0
       !> Indentation sigma at first touch [m], u and du/ds there, compression w, its last change,
@@ -52,6 +54,7 @@ module vcor_solver_direct_row
       procedure :: is_untouched
       procedure :: begin_pressing
       procedure :: elastic_force
+      procedure :: cut
       procedure :: has_one_spring
       procedure :: stiffness_without_dashpot
       procedure :: find_levels
@@ -103,6 +106,7 @@ contains
       self%drag = terms%viscosity/dt
       self%modulus = terms%moduli
       x = terms%rates*dt
+      self%phase = x
       self%decay = exp(-x)
       self%weight = part_of_step(x)
       ! int_0^1 exp(-x (1 - theta)) (theta - 1/2) dtheta
@@ -260,6 +264,21 @@ contains
       end if
    end subroutine begin_pressing
 
+   !> Cut the newest step of one spring, over the rest of which it is straight
+   subroutine cut(self, w, part, start)
+      class(row_t), intent(inout) :: self
+      !> Compression at the end of the part [m^1.5]
+      real(wp), intent(in) :: w
+      !> Part of the step, 0 .. 1
+      real(wp), intent(in) :: part
+      !> Compression at its start [m^1.5]
+      real(wp), intent(in) :: start
+
+      self%w(1) = w
+      self%lag(1, :) = exp(-part*self%phase)*self%before &
+         + part_of_step(part*self%phase)*(w - start)
+   end subroutine cut
+
    !> Whether the contact is one spring in u, as by Boltzmann's law
    pure function has_one_spring(self)
       class(row_t), intent(in) :: self
@@ -380,7 +399,10 @@ contains
       integer :: j, k
 
       x = s
-      if (.not. self%recedes) x = law%u(s)
+      if (.not. self%recedes) then
+         x = law%u(s)
+         self%before = self%lag(1, :)
+      end if
       do j = 1, self%count
          next = max(x, self%level(j)) - self%sigma(j)
          gained(j) = next - self%w(j)

@@ -6,9 +6,9 @@
 !> with s, have one solution.
 !>
 !> A face without a structure is touched at a node and left at once where the force ends: its
-!> contacts are aligned with the steps. While such a contact grows for the first time, the impulse
-!> of a dashpot is eta (u - u_0), exactly: its force rises as a root or a step, which no parabola
-!> follows. The rest of the force begins as t^n, from a dent linearly.
+!> contacts are aligned with the steps. There the impulse of a dashpot is eta (u - u_0), exactly: its
+!> force rises as a root or a step, which no parabola follows. In a row of springs that holds while
+!> the contact grows for the first time. The rest of the force begins as t^n, from a dent linearly.
 module vcor_solver_direct_run
    use vcor_impact_problem, only : impact_t
    use vcor_impact_structure, only : vibration_t
@@ -16,7 +16,7 @@ module vcor_solver_direct_run
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_direct_evaluation, only : fall_of
+   use vcor_solver_direct_evaluation, only : fall_of, parabola
    use vcor_solver_direct_modes, only : modes_t
    use vcor_solver_direct_row, only : row_t
    implicit none
@@ -56,15 +56,18 @@ module vcor_solver_direct_run
       real(wp) :: alpha = 0.0_wp
       !> Place of the sphere at t = 0, and how far an infinite plate had moved then [m]
       real(wp) :: place = 0.0_wp, sunk = 0.0_wp
-      !> Viscosity of the dashpot of a face [N s/m^1.5], and whether the contact grows for the first
-      !> time
+      !> Viscosity of the dashpot of a face [N s/m^1.5], and whether its impulse is taken from u
       real(wp) :: viscosity = 0.0_wp
-      logical :: grows = .false.
+      logical :: exact_drag = .false.
       !> Whether a face was touched at the newest node, and whether it has a dent there
       logical :: touches = .false., has_dent = .false.
       !> Force without the dashpot at the newest node and the one before [N], and u and its last
-      !> change [m^1.5], while the contact grows
+      !> change [m^1.5], while that is so
       real(wp) :: elastic(2) = 0.0_wp, u = 0.0_wp, du = 0.0_wp
+      !> Time from the separation to the newest node [s]
+      real(wp) :: behind = 0.0_wp
+      !> Impulse and its integral at the node before, while a step is made
+      real(wp) :: before(2) = 0.0_wp
       !> Last three indentations [m]
       real(wp) :: last_s(3) = 0.0_wp
       !> Multiplications so far
@@ -74,6 +77,7 @@ module vcor_solver_direct_run
       procedure :: take_step
       procedure, private :: press_face
       procedure, private :: part_from_face
+      procedure, private :: part_from_dashpot
       procedure :: node
       procedure :: sphere_velocity
       procedure :: sphere
@@ -101,7 +105,7 @@ contains
       if (.not. self%is_face) return
       self%alpha = impact%target%alpha(0.0_wp)
       self%viscosity = terms%viscosity
-      self%grows = self%viscosity > 0.0_wp
+      self%exact_drag = self%viscosity > 0.0_wp
       self%touches = .true.
    end subroutine begin
 
@@ -172,12 +176,13 @@ contains
       logical :: apart
 
       last = self%s
+      self%before = [self%impulse, self%second_impulse]
       speed(1) = self%sphere_velocity(impact) - self%alpha*self%force(1)
       self%steps = self%steps + 1
       self%t = self%t + self%dt
-      call self%row%find_levels(with_dashpot=.not. self%grows)
+      call self%row%find_levels(with_dashpot=.not. self%exact_drag)
       f = self%force(:2)
-      if (self%grows) f = self%elastic
+      if (self%exact_drag) f = self%elastic
       ! weights of the newest node and the two before in the integrals of the force, and in that of
       ! u of its last two changes
       once = rule
@@ -199,7 +204,7 @@ contains
          second = self%second_impulse + dt*(self%impulse + dt*sum(twice(2:)*f))
          per_force = dt*(dt*twice(1)/impact%mass + self%alpha*once(1))
          per_u = 0.0_wp
-         if (self%grows) then
+         if (self%exact_drag) then
             second = second + self%viscosity*dt*of_u(2)*self%du
             per_u = self%viscosity*(dt*of_u(1)/impact%mass + self%alpha)
          end if
@@ -209,7 +214,7 @@ contains
             call self%row%press(impact%law, s, value, slope)
             change = s - known + per_force*self%row%stiffness*value
             slope = 1.0_wp + per_force*self%row%stiffness*slope
-            if (self%grows) then
+            if (self%exact_drag) then
                change = change + per_u*(impact%law%u(s) - self%u)
                slope = slope + per_u*impact%law%slope(s)
             end if
@@ -220,31 +225,34 @@ contains
          call self%row%press(impact%law, s, value, slope)
          value = self%row%stiffness*value
          self%depth = [s - self%row%surface(impact%law), self%depth(1), self%depth(2)]
-         apart = .not. (value > 0.0_wp .or. self%grows .or. self%touches) .and. f(1) > 0.0_wp
+         apart = .not. (value > 0.0_wp .or. self%exact_drag .or. self%touches) .and. f(1) > 0.0_wp
          if (apart) then
             call self%part_from_face(impact, s)
-            gained = self%impulse - (impulse - dt*sum(once(2:)*f))
          else
-            gained = dt*(once(1)*value + sum(once(2:)*f))
             self%impulse = impulse + dt*once(1)*value
             self%second_impulse = second + dt**2*twice(1)*value
          end if
+         gained = self%impulse - self%before(1)
          call self%row%accept(impact%law, s, s - last)
          self%force = [value, self%force(1), self%force(2)]
-         if (self%grows) then
+         if (self%exact_drag) then
             u = impact%law%u(s)
             change = u - self%u
-            gained = gained + self%viscosity*change
-            self%impulse = self%impulse + self%viscosity*change
-            self%second_impulse = self%second_impulse + self%viscosity*dt*of_u(1)*change
-            self%elastic = [value, f(1)]
             slope = 1.5_wp*change - 0.5_wp*self%du
             if (self%touches) slope = change*merge(1.0_wp, impact%law%start_exponent, &
                self%has_dent)
             self%force(1) = value + self%viscosity*slope/dt
-            self%u = u
-            self%du = change
-            self%grows = s > last
+            if (.not. self%force(1) > 0.0_wp .and. .not. self%touches) then
+               call self%part_from_dashpot(impact, s, [self%elastic(2), self%elastic(1), value])
+            else
+               self%impulse = self%impulse + self%viscosity*change
+               self%second_impulse = self%second_impulse + self%viscosity*dt*of_u(1)*change
+               self%elastic = [value, f(1)]
+               self%u = u
+               self%du = change
+               self%exact_drag = self%row%has_one_spring() .or. s > last
+            end if
+            gained = self%impulse - self%before(1)
          end if
          self%last_s = [s, self%last_s(1), self%last_s(2)]
          self%s = s
@@ -291,10 +299,44 @@ contains
       end associate
       second = self%second_impulse + time*self%impulse + second
       self%impulse = self%impulse + impulse
-      self%second_impulse = second + (self%dt - time)*self%impulse
+      self%behind = self%dt - time
+      self%second_impulse = second + self%behind*self%impulse
       s = self%place + impact%free_path(self%t) - self%second_impulse/impact%mass &
          - self%alpha*self%impulse
    end subroutine part_from_face
+
+   !> End a contact with a dashpot in the newest step, which is cut there
+   subroutine part_from_dashpot(self, impact, s, elastic)
+      !> The run, with the impulses at the end of the step but for those of the dashpot
+      class(run_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      !> Indentation at the end of the step [m], on return at the separation
+      real(wp), intent(inout) :: s
+      !> Force without the dashpot at the last three nodes [N]
+      real(wp), intent(in) :: elastic(3)
+
+      ! Gauss's rule of two points on (0, 1)
+      real(wp), parameter :: place(2) = [0.21132486540518712_wp, 0.78867513459481288_wp]
+      real(wp) :: x, time, u(3), at(2), gained
+      integer :: i
+
+      x = fall_of([self%force(3), self%force(2), self%force(1)])
+      time = x*self%dt
+      u = [self%u - self%du, self%u, impact%law%u(s)]
+      ! the mean over (0, x) of the force, and twice that weighted by the time that is left
+      at = [(parabola(elastic, x*place(i)), i=1, 2)]
+      gained = 0.5_wp*sum(at)*time
+      at = at*(1.0_wp - place)*time**2*0.5_wp
+      self%second_impulse = self%before(2) + time*self%before(1) + sum(at) &
+         + self%viscosity*time*0.5_wp*sum([(parabola(u, x*place(i)) - self%u, i=1, 2)])
+      self%impulse = self%before(1) + gained + self%viscosity*(parabola(u, x) - self%u)
+      self%t = self%t - self%dt + time
+      s = self%place + impact%free_path(self%t) - self%second_impulse/impact%mass &
+         - self%alpha*self%impulse
+      call self%row%cut(impact%law%u(s), x, self%u)
+      self%force(1) = 0.0_wp
+      self%behind = 0.0_wp
+   end subroutine part_from_dashpot
 
    !> Velocity of the sphere [m/s]
    pure function sphere_velocity(self, impact) result(velocity)
