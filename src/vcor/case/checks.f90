@@ -5,9 +5,10 @@ module vcor_case_checks
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_address, only : material_names, swept_addresses
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, key_row, &
       keys_of, last_row, list_key, real_key, row_for_model, text_key, wanted
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : value_text
    use vcor_case_body, only : material_of_case

@@ -21,7 +21,7 @@ module vcor_case_choices
       !> Its names, lower case, between blanks
       character(len=64) :: words
       !> What it means here, and which keys have to do with it
-      character(len=400) :: meaning
+      character(len=480) :: meaning
    end type topic_t
 
    !> The words, in the order of the catalogue; those of units, of spacing and of yes and no explain

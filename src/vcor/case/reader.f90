@@ -7,8 +7,9 @@
 module vcor_case_reader
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_body, only : read_material
-   use vcor_case_case, only : address_t, case_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group
+   use vcor_case_entries, only : address_t
    use vcor_case_inputs, only : inputs_t, of_plate, of_sphere, of_target, quantity_t, shape_cone, &
       shape_power, shape_punch, shape_sphere, shape_true_sphere, target_beam, target_block, &
       target_modes, target_none, target_plate, target_rod, waves_body
