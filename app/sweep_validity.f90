@@ -174,8 +174,9 @@ contains
                //coordinates(grid, points(i))//': '//significant(cor(points(i)), 5, 0) &
                //', exact '//value//nl
          end do
-         if (farthest > 0) text = text//'    largest difference found '//significant(largest, 3, 0) &
-            //', predicted '//significant(deviation(farthest), 3, 0)//', '//coordinates(grid, farthest)//nl
+         if (farthest > 0) text = text//'    largest difference found ' &
+            //significant(largest, 3, 0)//', predicted '//significant(deviation(farthest), 3, 0) &
+            //', '//coordinates(grid, farthest)//nl
       end associate
       if (differs) text = '  cor_sphere with '//name_of_exact(case)//nl//text
       if (.not. differs) text = ''

@@ -14,6 +14,7 @@ module vcor_case_checks
    use vcor_case_body, only : material_of_case
    use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_values, only : range_message
+   use vcor_impact_shape, only : find_shape, shapes
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
    use vcor_material_shift, only : coldest, key_laws, keys_needed, shift_keys
@@ -268,7 +269,8 @@ contains
       end if
       do i = 1, size(own_rules)
          ! a flat punch does not recede, and the pair of a rigid body is none
-         if (own_rules(i)%key == 'law' .and. self%model(find_group('sphere'), 1) == 'punch') cycle
+         if (own_rules(i)%key == 'law' &
+             .and. .not. shapes(find_shape(self%model(find_group('sphere'), 1)))%recedes) cycle
          if (own_rules(i)%key == 'pair' .and. why_no_pair(self) /= '') cycle
          if (own_rules(i)%method == coupled) call demand(trim(own_rules(i)%group), &
             trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'")

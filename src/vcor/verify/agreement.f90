@@ -1,9 +1,9 @@
 !> How many digits of an outcome can be trusted, from its solutions by several methods
 !>
 !> The judgement is whether they agree within their stated errors. Of a structure the methods solve
-!> the first contact: internal variables follow no other. Its fastest modes ring from the first touch
-!> on, which panels longer than their periods smooth and steps follow: largest values and contact
-!> time may differ by what both state for it.
+!> the first contact: internal variables follow no other. Its fastest modes ring from the first
+!> touch on, which panels longer than their periods smooth and steps follow: largest values and
+!> contact time may differ by what both state for it.
 module vcor_verify_agreement
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
       ieee_value
