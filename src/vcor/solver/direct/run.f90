@@ -31,8 +31,8 @@ module vcor_solver_direct_run
 
    !> A run with a given time step, at its newest node
    type :: run_t
-      !> Time step [s] and number of steps
-      real(wp) :: dt = 0.0_wp
+      !> Time step, time at which the run begins [s], and number of steps
+      real(wp) :: dt = 0.0_wp, start = 0.0_wp
       integer :: steps = 0
       !> Modes of the structure and springs of the contact
       type(modes_t) :: modes
@@ -43,6 +43,8 @@ module vcor_solver_direct_run
       real(wp) :: residual = 0.0_wp
       !> Time [s], indentation [m], impulse [N s] and its integral [N s2]
       real(wp) :: t = 0.0_wp, s = 0.0_wp, impulse = 0.0_wp, second_impulse = 0.0_wp
+      !> What the last two are short of their sums, by rounding
+      real(wp) :: rest(2) = 0.0_wp
       !> Force at the newest node and at the two before [N]; 0 before one that is 0
       real(wp) :: force(3) = 0.0_wp
       !> s less the surface of the dent, at the newest node and the two before [m]
@@ -126,7 +128,8 @@ contains
       call self%modes%advance([self%force(1), self%force(2)])
       call self%row%find_levels()
       associate (dt => self%dt, f => self%force)
-         self%t = self%t + dt
+         ! a sum of equal steps would be off by the same rounding in each of them
+         self%t = self%start + real(self%steps, wp)*dt
          known = self%second_impulse + dt*self%impulse + dt**2*(10.0_wp*f(1) - f(2))/24.0_wp
          per_force = 0.125_wp*dt**2/impact%mass + self%modes%yield + self%residual
          s = impact%free_path(self%t) - known/impact%mass - self%modes%deflection()
@@ -146,9 +149,9 @@ contains
          call self%modes%accept(force)
          bend = force - 2.0_wp*f(1) + f(2)
          if (.not. max(force, f(1)) > 0.0_wp) bend = 0.0_wp
-         self%second_impulse = self%second_impulse + dt*self%impulse &
-            + dt**2*(f(1)/3.0_wp + force/6.0_wp - bend/24.0_wp)
-         self%impulse = self%impulse + dt*(0.5_wp*(f(1) + force) - bend/12.0_wp)
+         call add(self%second_impulse, self%rest(2), dt*(self%impulse + self%rest(1)) &
+            + dt**2*(f(1)/3.0_wp + force/6.0_wp - bend/24.0_wp))
+         call add(self%impulse, self%rest(1), dt*(0.5_wp*(f(1) + force) - bend/12.0_wp))
          self%last_s = [s, self%last_s(1), self%last_s(2)]
          self%s = s
          f = [force, f(1), f(2)]
@@ -162,6 +165,22 @@ contains
             + real(self%row%count*(20 + 4*self%row%modes()), wp)
       end associate
    end subroutine take_step
+
+   !> Add to a sum, and keep what rounding takes from it for the next time (W. Kahan, Commun. ACM 8
+   !> (1965) 40, doi:10.1145/363707.363723)
+   pure subroutine add(total, rest, part)
+      !> The sum, and what it is short of
+      real(wp), intent(inout) :: total, rest
+      !> What is added
+      real(wp), intent(in) :: part
+
+      real(wp) :: more, last
+
+      more = part + rest
+      last = total
+      total = last + more
+      rest = more - (total - last)
+   end subroutine add
 
    !> Advance to the next node on a face
    subroutine press_face(self, impact)
@@ -179,7 +198,7 @@ contains
       self%before = [self%impulse, self%second_impulse]
       speed(1) = self%sphere_velocity(impact) - self%alpha*self%force(1)
       self%steps = self%steps + 1
-      self%t = self%t + self%dt
+      self%t = self%start + real(self%steps, wp)*self%dt
       call self%row%find_levels(with_dashpot=.not. self%exact_drag)
       f = self%force(:2)
       if (self%exact_drag) f = self%elastic
