@@ -3,8 +3,8 @@
 A sphere of mass m falls on a face whose contact is Hertz's with a sum of exponentials and a dashpot,
 by Boltzmann's law, on an infinite thin elastic plate or on nothing that moves:
 
-    F = G_0 u + sum G_k p_k + eta u',   p_k' = u' - l_k p_k,   u = K s^1.5
-    v' = g - F/m,   s' = v - alpha F'' s'' ...   with U' = alpha F:   s' = v - alpha F
+    F = G_0 u + sum G_k p_k + eta u',   p_k' = u' - l_k p_k,   u = s^1.5
+    v' = g - F/m,   s' = v - U',   U' = alpha F   or   U = sum of modes, x_n'' + d_n x_n' + w_n^2 x_n = F/m_n
 
 In contact y = sqrt(s) and dt = y dx make everything analytic from first touch:
 
@@ -13,8 +13,10 @@ In contact y = sqrt(s) and dt = y dx make everything analytic from first touch:
 with F = G_0 y^3 + sum G_k p_k + 3 eta y s'/2. It is integrated by Dormand and Prince's method of
 order 8 with a relative tolerance of 1e-13. The contact ends at F = 0, or at y = 0 if it is elastic.
 In flight the dent is linear: w = sum of eigenvectors. The next touch is where the parabola of the
-sphere meets (w)^(2/3). The dent is never forgotten. The sphere rests if the force has three minima
-above zero in a contact.
+sphere meets w^(2/3); the modes are damped oscillations, and steps of a hundredth of the shortest
+period look for the first touch. A bounce on modes ends where the sphere is farther off than the sum of
+their amplitudes. The dent is never forgotten. The sphere rests if the force has three minima above
+zero in a contact.
 
 Usage: make_bounces.py        needs numpy, scipy; writes bounces.json, some seconds
 """
@@ -45,6 +47,20 @@ CASES = {
     # all of it
     "relaxing_dashpot": {"velocity": 1.0, "bounces": 12, "equilibrium": 1.0e6,
                          "moduli": [2.0e6, 5.0e5], "rates": [1000.0, 20.0], "viscosity": 60.0},
+    # on an infinite thin elastic plate, which sinks
+    "plate": {"velocity": 1.0, "bounces": 8, "equilibrium": 7.0e10, "moduli": [], "rates": [],
+              "viscosity": 0.0, "density": 2500.0, "half_thickness": 0.01},
+    # an elastic ball on a block with a spring and a dashpot: several contacts in some bounces
+    "block": {"velocity": 0.5, "bounces": 6, "equilibrium": 1.0e9, "moduli": [], "rates": [],
+              "viscosity": 0.0, "modes": [[300.0, 0.05, 0.1]]},
+    # two modes and a pad that relaxes
+    "modes": {"velocity": 0.3, "bounces": 5, "equilibrium": 1.0e8, "moduli": [1.0e8],
+              "rates": [3000.0], "viscosity": 0.0, 
+              "modes": [[150.0, 0.04, 0.2], [700.0, 0.03, 0.3]]},
+    # a flexible structure that strikes again
+    "again": {"velocity": 0.3, "bounces": 3, "equilibrium": 1.0e8, "moduli": [1.0e8],
+              "rates": [3000.0], "viscosity": 0.0,
+              "modes": [[40.0, 0.05, 0.01], [260.0, 0.05, 0.02], [700.0, 0.05, 0.02]]},
     # never rests
     "elastic": {"velocity": 1.0, "bounces": 20, "equilibrium": 1.0e8, "moduli": [], "rates": [],
                 "viscosity": 0.0},
@@ -61,133 +77,192 @@ class Contact:
         self.g = factor*np.array(case["moduli"], dtype=float)
         self.rates = np.array(case["rates"], dtype=float)
         self.eta = factor*case["viscosity"]
-        self.alpha = case.get("alpha", 0.0)
+        self.alpha = 0.0
+        if "density" in case:
+            # Zener's thin plate, sqrt(3 rho (1 - nu^2)/E)/(16 rho h^2)
+            self.alpha = (np.sqrt(3*case["density"]*(1 - BALL["poisson"]**2)/case["equilibrium"])
+                          / (16*case["density"]*case["half_thickness"]**2))
+        modes = np.array(case.get("modes", np.zeros((0, 3))), dtype=float)
+        self.omega, zeta, self.modal_mass = 2*np.pi*modes[:, 0], modes[:, 1], modes[:, 2]
+        self.damping = 2*zeta*self.omega
+        self.n, self.m = len(self.g), len(self.omega)
+
+    def parts(self, state):
+        """Lags, deflections and velocities of the modes in a state y, v, t, p, x, x'."""
+        n, m = 3 + self.n, self.m
+        return state[3:n], state[n:n + m], state[n + m:]
 
     def force(self, state):
-        """Force from y, v, t, p; with the plate's velocity in it."""
-        y, v, p = state[0], state[1], state[3:]
+        """Force; with the plate's velocity in it."""
+        y, v = state[:2]
+        p, _, rate = self.parts(state)
         drag = 1.5*self.eta*y
-        return (self.g0*y**3 + self.g@p + drag*v)/(1 + self.alpha*drag)
+        return (self.g0*y**3 + self.g@p + drag*(v - rate.sum()))/(1 + self.alpha*drag)
 
     def rate(self, _, state):
         """Derivative by x."""
-        y, v, p = state[0], state[1], state[3:]
+        y, v = state[:2]
+        p, place, rate = self.parts(state)
         force = self.force(state)
-        speed = v - self.alpha*force
-        return np.concatenate(([speed/2, y*(self.gravity - force/self.mass), y],
-                               1.5*y**2*speed - self.rates*y*p))
+        speed = v - self.alpha*force - rate.sum()
+        return np.concatenate((
+            [speed/2, y*(self.gravity - force/self.mass), y], 1.5*y**2*speed - self.rates*y*p,
+            y*rate, y*(force/self.modal_mass - self.damping*rate - self.omega**2*place)))
 
-    def press(self, y, v, p):
+    def press(self, state):
         """Follow a contact; state at its end, largest force and indentation, or None at rest."""
-        elastic = self.eta == 0 and len(self.g) == 0
+        elastic = self.eta == 0 and self.n == 0
 
         def ends(_, state):
             return state[0] if elastic else self.force(state)
 
-        def dips(_, state):
-            h = 1e-6*state[2:3]
-            del h
+        def turns(_, state):
             return self.rate(0, state)[0]
+
         ends.terminal, ends.direction = True, -1
-        dips.direction = 0
-        state = np.concatenate(([y, v, 0.0], p))
-        scale = (self.mass/(self.g0 + self.g.sum() + 1e-300))**0.4*max(abs(v), 1e-3)**-0.2
-        length = np.sqrt(max(abs(v), 1e-3)*scale)
+        speed = max(abs(2*self.rate(0, state)[0]), 1e-3)
+        scale = (self.mass/(self.g0 + self.g.sum()))**0.4*speed**-0.2
+        length = scale/np.sqrt(speed*scale)
+        options = {"method": "DOP853", "rtol": TOLERANCE, "atol": 1e-30}
         # leave the start, where the event has a zero
-        first = solve_ivp(self.rate, (0, 1e-3*scale/length), state, method="DOP853",
-                          rtol=TOLERANCE, atol=1e-30)
-        state = first.y[:, -1]
-        largest, deepest, turns = 0.0, 0.0, 0
+        state = solve_ivp(self.rate, (0, 1e-3*length), state, **options).y[:, -1]
+        largest, deepest, count = 0.0, 0.0, 0
         for _ in range(40):
-            piece = solve_ivp(self.rate, (0, 20*scale/length), state, method="DOP853",
-                              rtol=TOLERANCE, atol=1e-30, events=(ends, dips), dense_output=True)
+            piece = solve_ivp(self.rate, (0, 20*length), state, events=(ends, turns),
+                              dense_output=True, **options)
             grid = np.linspace(0, piece.t[-1], 4001)
-            values = piece.sol(grid)
-            force = np.array([self.force(one) for one in values.T])
+            force = np.array([self.force(one) for one in piece.sol(grid).T])
             top = force.argmax()
             low, high = grid[max(top - 1, 0)], grid[min(top + 1, len(grid) - 1)]
-            for _ in range(60):
+            while high - low > 1e-9*grid[1]:
                 inner = np.linspace(low, high, 9)
                 many = [self.force(piece.sol(x)) for x in inner]
                 top = int(np.argmax(many))
                 low, high = inner[max(top - 1, 0)], inner[min(top + 1, 8)]
-                if high - low < 1e-9*(grid[1] - grid[0]):
-                    break
-            largest = max(largest, max(many), force.max())
-            for turn in piece.y_events[1]:
-                deepest = max(deepest, turn[0]**2)
-            turns += len(piece.t_events[1])
+            largest = max(largest, *many)
+            deepest = max([deepest] + [one[0]**2 for one in piece.y_events[1]])
+            count += len(piece.t_events[1])
             if piece.t_events[0].size:
                 return piece.y_events[0][0], largest, deepest
-            if turns > 6:
-                return None, largest, deepest
+            if count > (6 if self.m == 0 else 400):
+                break
             state = piece.y[:, -1]
         return None, largest, deepest
 
-    def free(self, w, p):
-        """Amplitudes, rates and vectors (w, p) of the free dent."""
-        n = len(self.g)
+    def free_dent(self, w, p):
+        """Function of time that gives w and p of the free dent."""
+        n = self.n
         if self.eta > 0:
             # w' = -(G_0 w + sum G p)/eta, p' = w' - l p
             row = -np.concatenate(([self.g0], self.g))/self.eta
-            matrix = np.vstack([row, np.tile(row, (n, 1)) - np.hstack(
-                [np.zeros((n, 1)), np.diag(self.rates)])]) if n else row[None, :]
-            start = np.concatenate(([w], p))
+            matrix = np.vstack([row, *(row - np.eye(n + 1)[k + 1]*self.rates[k]
+                                       for k in range(n))])
             values, vectors = np.linalg.eig(matrix)
-            return np.linalg.solve(vectors, start), values, vectors
-        if n == 0:
-            return np.zeros(1), np.zeros(1), np.zeros((1, 1))
-        # in q = w - p: w = sum G q/(G_0 + sum G), q' = l (w - q)
-        share = self.g/(self.g0 + self.g.sum())
-        matrix = self.rates[:, None]*(np.tile(share, (n, 1)) - np.eye(n))
-        values, vectors = np.linalg.eig(matrix)
-        amplitude = np.linalg.solve(vectors, w - p)
-        w_of = share@vectors
-        return amplitude, values, np.vstack([w_of, w_of - vectors])
+            c = np.linalg.solve(vectors, np.concatenate(([w], p)))
+        elif n:
+            # in q = w - p: w = sum G q/(G_0 + sum G), q' = l (w - q)
+            share = self.g/(self.g0 + self.g.sum())
+            matrix = self.rates[:, None]*(np.tile(share, (n, 1)) - np.eye(n))
+            values, vectors = np.linalg.eig(matrix)
+            c = np.linalg.solve(vectors, w - p)
+            vectors = np.vstack([share@vectors, share@vectors - vectors])
+        else:
+            return lambda t: np.zeros(1)
+        return lambda t: np.real(vectors@(c*np.exp(values*t)))
+
+    def free_modes(self, place, rate):
+        """Function of time that gives deflections and velocities of the free modes."""
+        half = self.damping/2
+        root = np.sqrt(self.omega**2 - half**2)
+
+        def at(t):
+            fall, cosine, sine = np.exp(-half*t), np.cos(root*t), np.sin(root*t)/root
+            return (fall*(place*cosine + (rate + half*place)*sine),
+                    fall*(rate*cosine - (self.omega**2*place + half*rate)*sine))
+
+        return at
+
+    def fly(self, state):
+        """State at the next touch, and whether the sphere has been out of reach before."""
+        s, v = state[0]**2, state[1]
+        p, place, rate = self.parts(state)
+        dent, modes = self.free_dent(s**1.5, p), self.free_modes(place, rate)
+        top = s + place.sum()
+
+        def gap(t):
+            return (max(dent(t)[0], 0.0)**(2/3) + modes(t)[0].sum() - top - v*t
+                    - 0.5*self.gravity*t**2)
+
+        if self.m == 0:
+            left = True
+            high = -2*v/self.gravity
+            t = brentq(gap, 1e-9*high, 1.0001*high, xtol=1e-18, rtol=1e-15)
+        else:
+            left, t, step = False, 0.0, 2*np.pi/self.omega.max()/400
+            while True:
+                x, xdot = modes(t)
+                reach = np.sqrt(x**2 + (xdot/self.omega)**2).sum()
+                height = -(top + v*t + 0.5*self.gravity*t**2)
+                if v + self.gravity*t < 0 and height >= reach:
+                    left = True
+                # steps far from the structure are long
+                ahead = step
+                if height > 1.2*reach and v + self.gravity*t < 0:
+                    ahead = max(step, -(v + self.gravity*t)/self.gravity/3)
+                if t > 0 and gap(t + ahead) < 0:
+                    if ahead == step:
+                        t = brentq(gap, t, t + ahead, xtol=1e-18, rtol=1e-15)
+                        break
+                    ahead = step
+                t += ahead
+        now = dent(t)
+        y = np.cbrt(max(now[0], 0.0))
+        return np.concatenate(([y, v + self.gravity*t, t], now[1:], *modes(t))), left
 
     def bounce(self, velocity, bounces):
         """All bounces, and how they end."""
-        n = len(self.g)
-        y, v, p, time, sunk = 0.0, velocity, np.zeros(n), 0.0, 0.0
-        rows = []
+        time, sunk, rows = 0.0, 0.0, []
+        start = np.concatenate(([0.0, velocity, 0.0], np.zeros(self.n + 2*self.m)))
         while True:
-            state, largest, deepest = self.press(y, v, p)
-            if state is None:
-                return rows, "rest", time
-            s, after, p = state[0]**2, state[1], state[3:]
-            if self.alpha:
-                # U = alpha int F = alpha m (g t - change of v)
-                sunk += self.alpha*self.mass*(self.gravity*state[2] + v - after)
-            rows.append({"time": time, "velocity": v, "cor": -after/v, "separation": time + state[2],
-                         "height": after**2/(2*self.gravity) - s - sunk, "max_force": largest,
-                         "max_indentation": deepest})
+            touch, contacts, largest, deepest = (time, start[1]), 0, 0.0, 0.0
+            while True:
+                state, force, depth = self.press(start)
+                largest, deepest = max(largest, force), max(deepest, depth)
+                if state is None:
+                    return rows, "rest", touch[0]
+                contacts += 1
+                time += state[2]
+                s, after = state[0]**2, state[1]
+                if self.alpha:
+                    # U = alpha int F = alpha m (g t - change of v)
+                    sunk += self.alpha*self.mass*(self.gravity*state[2] + start[1] - after)
+                last = time
+                place = s + sunk + self.parts(state)[1].sum()
+                start, left = self.fly(state)
+                time += start[2]
+                start[2] = 0.0
+                if left:
+                    break
+            rows.append({"time": touch[0], "velocity": touch[1], "cor": -after/touch[1],
+                         "contacts": contacts, "last_separation": last,
+                         "rebound_height": after**2/(2*self.gravity) - place,
+                         "max_force": largest, "max_indentation": deepest})
             if len(rows) == bounces:
-                return rows, "count", rows[-1]["separation"]
-            c, values, vectors = self.free(s**1.5, p)
-
-            def dent(t, c=c, values=values, vectors=vectors):
-                return np.real(vectors@(c*np.exp(values*t)))
-
-            def gap(t, s=s, after=after, dent=dent):
-                return max(dent(t)[0], 0.0)**(2/3) - s - after*t - 0.5*self.gravity*t**2
-
-            high = -2*after/self.gravity
-            flight = brentq(gap, 1e-9*high, 1.0001*high, xtol=1e-18, rtol=1e-15)
-            now = dent(flight)
-            y, p = np.cbrt(max(now[0], 0.0)), now[1:]
-            v = after + self.gravity*flight
-            time = rows[-1]["separation"] + flight
+                return rows, "count", last
 
 
 def main():
     """Write all cases."""
-    known = {}
+    known = []
     for name, case in CASES.items():
         rows, ending, total = Contact(case).bounce(case["velocity"], case["bounces"])
-        known[name] = {**BALL, **case, "ending": ending, "total_time": total, "rows": rows}
+        facts = {**BALL, **case, "bounces_end": ending, "bouncing_time": total,
+                 "columns": list(rows[0])}
+        lines = ",\n".join("   " + json.dumps(list(row.values())) for row in rows)
+        known.append(f'"{name}": {json.dumps(facts)[:-1]},\n "rows": [\n{lines}]}}')
         print(name, len(rows), ending, total)
     path = Path(__file__).with_name("bounces.json")
-    path.write_text(json.dumps(known, indent=1) + "\n")
+    path.write_text("{\n" + ",\n".join(known) + "\n}\n")
 
 
 if __name__ == "__main__":

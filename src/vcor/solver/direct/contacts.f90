@@ -585,7 +585,7 @@ contains
       real(wp) :: touch(2)
 
       touch = 0.0_wp
-      if (.not. (run%is_face .or. run%steps < 2)) &
+      if (.not. run%is_face) &
          touch(1) = run%t - (1.0_wp - fall_of(-run%depth(3:1:-1)))*run%dt
       ! there has been no force before
       touch(2) = impact%free_velocity(touch(1))

@@ -68,7 +68,8 @@ contains
          next%place = place
          next%s = place - sum(modes%eta) - sum(modes%lag)
          next%last_s = next%s
-         next%depth = next%s - next%row%surface(impact%law)
+         next%depth = next%s - next%row%surface(impact%law) &
+            - (impact%velocity - next%modes%rate())*dt*[0.0_wp, 1.0_wp, 2.0_wp]
       end if
       run = next
 

@@ -132,7 +132,7 @@ contains
          self%t = self%start + real(self%steps, wp)*dt
          known = self%second_impulse + dt*self%impulse + dt**2*(10.0_wp*f(1) - f(2))/24.0_wp
          per_force = 0.125_wp*dt**2/impact%mass + self%modes%yield + self%residual
-         s = impact%free_path(self%t) - known/impact%mass - self%modes%deflection()
+         s = self%place + impact%free_path(self%t) - known/impact%mass - self%modes%deflection()
          known = s
          ! the force is convex in s: after one of Newton's steps the others fall towards the root
          do iteration = 1, most_iterations
