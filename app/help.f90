@@ -1,6 +1,6 @@
 !> Screens of help about commands and about words of input and output
 module vcor_app_help
-   use vcor_app_commands, only : command_names, commands, entry_t, missing_package, &
+   use vcor_app_commands, only : command_names, commands, part_t, missing_package, &
       package_commands, page_of, texts_of
    use vcor_app_external, only : external_commands
    use vcor_app_screen, only : screen_items
@@ -125,7 +125,7 @@ contains
 
    !> Page of a command
    function command_page(page) result(text)
-      type(entry_t), intent(in) :: page(:)
+      type(part_t), intent(in) :: page(:)
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: words, before, kind

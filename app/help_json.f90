@@ -1,6 +1,6 @@
 !> All help as one JSON document, `vcor help --json`, from which scripts/manual.py makes the manual
 module vcor_app_help_json
-   use vcor_app_commands, only : command_names, entry_t, options_of, package_commands, page_of, &
+   use vcor_app_commands, only : command_names, part_t, options_of, package_commands, page_of, &
       texts_of
    use vcor_app_screen, only : screen_items
    use vcor_case_described, only : described_groups
@@ -125,7 +125,7 @@ contains
       character(len=*), intent(in) :: command
       character(len=:), allocatable :: text
 
-      type(entry_t), allocatable :: page(:)
+      type(part_t), allocatable :: page(:)
       character(len=:), allocatable :: entries, name
       integer :: i, mark
 

@@ -39,7 +39,7 @@ class Error(Exception):
     """An error of vcor; its text is the line of the program, `code` the program's exit code."""
 
     code = 1
-    #: What there is of a result: the summary of an impact that does not separate, else None
+    #: Summary of an impact that does not separate, else None
     result: Any = None
 
     def __init__(self, message: str = "") -> None:
@@ -232,7 +232,7 @@ class _Worker:
             self._codes.put(job())
 
     def code(self, job: Callable[[], int]) -> int:
-        """What a call returns."""
+        """Code that a call returns."""
         self._jobs.put(job)
         while True:
             # a signal just before a wait does not end it

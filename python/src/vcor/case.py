@@ -568,7 +568,7 @@ class Case:
         return _dataset(variables, described, self._attrs(coords))
 
     def _attrs(self, coords: Mapping[str, tuple[str, Floats]]) -> dict[str, str]:
-        """What the program writes at the root of a file."""
+        """Attributes that the program writes at the root of a file."""
         try:
             text = self.text(complete=True)
         except InputError:

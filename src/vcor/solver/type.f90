@@ -127,7 +127,7 @@ contains
          outcome = evaluate(impact, trajectory)
          if (outcome%status == contact_resting &
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
-            call outcome%settle(impact)
+            call outcome%come_to_rest(impact)
          if (all(outcome%status /= [contact_separated, contact_resting])) return
          if (trajectory%returns .and. .not. solver%settings%first_contact) then
             call raise(error, error_numerical, 'the structure strikes the sphere again after the ' &

@@ -7,8 +7,9 @@
 !>
 !> with the exponential of the matrix of the differential equations of state and force. Its part
 !> A - 1 is computed and added: the rounding of A itself would be the same in every step, and add up
-!> to the number of steps. A mode that the steps do not resolve follows the force as a spring: left undamped, it would ring with the
-!> corners of the parabolas, and make a sphere hop from node to node.
+!> to the number of steps. A mode that the steps do not resolve follows the force as a spring: left
+!> undamped, it would ring with the corners of the parabolas, and make a sphere hop from node to
+!> node.
 module vcor_solver_direct_modes
    use vcor_impact_structure, only : state_of_modes_t, vibration_t
    use vcor_kinds, only : wp
@@ -141,8 +142,8 @@ contains
       self%end(n, :) = answer(:, 2) + answer(:, 3)
    end subroutine set_step
 
-   !> Replace a matrix M by exp(M) - 1: Taylor's series of the matrix over a power of two, squared by
-   !> (1 + E)^2 - 1 = 2 E + E^2
+   !> Replace a matrix M by exp(M) - 1: Taylor's series of the matrix over a power of two, squared
+   !> as (1 + E)^2 - 1 = 2 E + E^2
    pure subroutine exponentiate(matrix)
       real(wp), intent(inout) :: matrix(:, :)
 
