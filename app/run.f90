@@ -1,5 +1,6 @@
 !> The command run for a single impact; sweeps are in `vcor_app_sweep`
 module vcor_app_run
+   use vcor_app_bounces, only : bounces_report
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
@@ -9,8 +10,7 @@ module vcor_app_run
    use vcor_app_warnings, only : warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_bounces, only : bounces_t
-   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_outcome, only : bounces_of, outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
    use vcor_impact_validity, only : forgotten_base
@@ -71,7 +71,7 @@ contains
       end if
       call end_of(job, outcome, worker%trajectory, error)
       if (job%files%bounces) call bounces_table(tables(2), title, completed, &
-         bounces_of(worker%trajectory))
+         bounces_of(worker%problem%impact, worker%trajectory, outcome))
       if (job%files%history) call history_table(tables(size(tables)), title, completed, &
          worker%problem%impact, worker%trajectory)
       call write_files(job%files, tables, files, trouble)
@@ -92,7 +92,7 @@ contains
       !> Write the report, including results of the exact mechanics
       subroutine write_screen()
          type(model_t) :: exact
-         character(len=:), allocatable :: lines, method
+         character(len=:), allocatable :: bounces, lines, method
          logical :: is_shown
 
          associate (reading => job%sweep%problem%reading)
@@ -114,6 +114,9 @@ contains
             end if
          end associate
          if (.not. is_shown) exact%outcome = outcome_t()
+         bounces = ''
+         if (job%files%bounces) bounces = bounces_report(bounces_of(worker%problem%impact, &
+            worker%trajectory, outcome), outcome%validity)
          associate (course => worker%trajectory)
             ! a kernel that is not a finite sum of exponentials was approximated
             if (course%kernel_terms > 0) lines = lines//as_line('kernel as a sum of ' &
@@ -123,19 +126,11 @@ contains
             ! `auto` uses direct if ive fails
             if (method == 'ive' .and. course%stages == 0) method = 'direct'
             call write_stdout(report(job%case%source, title, method, outcome, &
-               exact%outcome, name_of_exact(job%case), course%state(1, course%last), lines &
-               //remarks_on(job, outcome)//files), trouble)
+               exact%outcome, name_of_exact(job%case), course%state(1, course%last), bounces, &
+               lines//remarks_on(job, outcome)//files), trouble)
          end associate
       end subroutine write_screen
    end subroutine run_impact
-
-   !> Bounces of a trajectory; none if the sphere stays at the first touch
-   pure function bounces_of(trajectory) result(bounces)
-      type(trajectory_t), intent(in) :: trajectory
-      type(bounces_t) :: bounces
-
-      if (allocated(trajectory%bounces)) bounces = trajectory%bounces
-   end function bounces_of
 
    !> First word of a text
    pure function word_of(text) result(word)

@@ -194,6 +194,8 @@ contains
          is_whole=.true.)
       call list%add('bouncing_time', 't_N', 's', 'time to the end of the bounces', &
          outcome%bouncing_time)
+      call list%add('bouncing_time_error', 'dt_N', 's', 'estimated error of bouncing_time', &
+         outcome%bouncing_time_error)
       call list%add('bounces_end', '', '', 'how the bounces ended', &
          real(outcome%bounces_end, wp), labels=end_names, first=0)
       call list%add('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0', &
