@@ -75,6 +75,8 @@ contains
          text = text//'; the contact after them lasts'
       case (ends_error)
          text = text//'; later ones are not known to a hundred times the accuracy asked for'
+      case default
+         continue
       end select
    end function ending_of
 

@@ -8,7 +8,8 @@ module vcor_app_help_json
    use vcor_json, only : array, member, object, strings, words
    use vcor_solver_features, only : features, methods, of_paper_scheme, reads, refusals, &
       solves, unread
-   use vcor_sweep_quantity, only : bounce_quantities, history_quantities, quantities, quantity_t, statuses
+   use vcor_sweep_quantity, only : bounce_quantities, history_quantities, quantities, &
+      quantity_t, statuses
    use vcor_text, only : integer_text
    use vcor_version, only : version
    use vcor_words, only : contains_word, list_of_words, longest_name

@@ -443,7 +443,11 @@ class Case:
         self._warn({})
         columns = _library.columns(3)
         variables: dict[str, Any] = {
-            name: ("bounce", row.astype(int) if columns[name].is_whole else row, columns[name].attrs)
+            name: (
+                "bounce",
+                row.astype(int) if columns[name].is_whole else row,
+                columns[name].attrs,
+            )
             for name, row in self._rows("vcor_bounces", 3).items()
         }
         number = variables.pop("bounce")

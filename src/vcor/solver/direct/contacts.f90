@@ -3,8 +3,8 @@
 !> A structure comes back: after the first separation it may strike the sphere again, and the first
 !> separation then means nothing. The steps are equal, and contact, flight and the next contact are
 !> one formula (`vcor_solver_direct_run`). Where a contact begins or ends within a step the force is
-!> not smooth, ~ tau^n, and the error falls as dt^(n+1), or as dt^2 for materials that relax. N steps
-!> take N times the modes and springs.
+!> not smooth, ~ tau^n, and the error falls as dt^(n+1), or as dt^2 for materials that relax. N
+!> steps take N times the modes and springs.
 !>
 !> The sphere has left where the structure cannot reach it any more (`vcor_impact_structure`). What
 !> touches before that counts, also under gravity.

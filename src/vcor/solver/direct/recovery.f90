@@ -4,8 +4,8 @@
 !>
 !>     G_0 w + sum_k G_k p_k + eta w' = 0,   p_k' = w' - l_k p_k
 !>
-!> Its motions are w = c exp(-x t) with the lags p_k = -c x/(l_k - x) exp(-x t), where the retardation
-!> rates x are the zeros of the modulus at p = -x,
+!> Its motions are w = c exp(-x t) with the lags p_k = -c x/(l_k - x) exp(-x t), where the
+!> retardation rates x are the zeros of the modulus at p = -x,
 !>
 !>     G_0 - x sum_k G_k/(l_k - x) - eta x
 !>

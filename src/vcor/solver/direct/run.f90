@@ -6,9 +6,10 @@
 !> with s, have one solution.
 !>
 !> A face without a structure is touched at a node and left at once where the force ends: its
-!> contacts are aligned with the steps. There the impulse of a dashpot is eta (u - u_0), exactly: its
-!> force rises as a root or a step, which no parabola follows. In a row of springs that holds while
-!> the contact grows for the first time. The rest of the force begins as t^n, from a dent linearly.
+!> contacts are aligned with the steps. There the impulse of a dashpot is eta (u - u_0), exactly:
+!> its force rises as a root or a step, which no parabola follows. In a row of springs that holds
+!> while the contact grows for the first time. The rest of the force begins as t^n, from a dent
+!> linearly.
 module vcor_solver_direct_run
    use vcor_impact_problem, only : impact_t
    use vcor_impact_structure, only : vibration_t
