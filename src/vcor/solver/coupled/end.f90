@@ -40,16 +40,17 @@ contains
    !>
    !> While the waves are faster than the edge, the contact of a round body shrinks as a^2 ~ t_s - t
    !> and its force falls as (t_s - t)^(3/2). This sends out waves, and the compression on the axis
-   !> ends in a way that no step resolves. If those of an elastic half space, as stiff
-   !> as the plate in a step, had passed, the approach there would fall steadily: what else the face
-   !> does is slow. Its root t_s does not depend on steps and springs. What the waves do near it is
-   !> an impact problem of its own with one length, at which the edge is as fast as they are, a_s =
+   !> ends in a way that no step resolves. If those of an elastic half space, as stiff as the plate
+   !> in a step, had passed, the approach there would fall steadily: what else the face does is
+   !> slow. Its root t_s does not depend on steps and springs. What the waves do near it is an
+   !> impact problem of its own with one length, at which the edge is as fast as they are, a_s =
    !> R V/c, and one time, R V/c^2: V is the speed at which the steady approach falls, and R the
    !> radius of curvature of the body less that of the dent out of which it rises. So the contact
    !> ends R V/c^2 times a number before t_s that depends on Poisson's ratio of the plate and on the
-   !> part of the striker in the local compliance alone, `advance`. On a layer thinner than a_s
-   !> the waves come back before the end: there, and for blunt bodies, whose edge is faster than the
-   !> waves for many steps, the end is that of the compression as marched
+   !> part of the striker in the local compliance alone, `advance`; a cone has no such length, and
+   !> what is sharper than a sphere hardly one. On a layer thinner than a_s the waves come back
+   !> before the end: there, and for blunt bodies, whose edge is faster than the waves for many
+   !> steps, the end is that of the compression as marched
    pure subroutine end_contact(course, impact, kernel, axis, beside, hats)
       !> The course, its last step the first without contact
       type(course_t), intent(inout) :: course
@@ -105,7 +106,8 @@ contains
       pure subroutine find_time_of_waves(time, is_thick)
          !> R V/c^2 [s]
          real(wp), intent(out) :: time
-         !> False too if the body rises out of a dent that is as curved as it
+         !> False too if the body rises out of a dent that is as curved as it, and if R V/c^2 is
+         !> longer than the contact
          logical, intent(out) :: is_thick
 
          real(wp) :: dent, here, rate, speed
@@ -119,7 +121,8 @@ contains
          speed = rate/real(impact%face%per_shear_speed(cmplx(rate, kind=wp)), wp)
          time = max(0.0_wp, kernel%row%node(kernel%beside)**2/dent &
             *(here - axis(k) - passing(k, 1))*rate/speed**2)
-         is_thick = impact%face%base == base_half_space .or. time*speed <= impact%face%thickness
+         is_thick = time <= real(k, wp)*course%dt .and. (impact%face%base == base_half_space &
+            .or. time*speed <= impact%face%thickness)
       end subroutine find_time_of_waves
 
       !> Displacement of a node by the waves that pass
