@@ -392,13 +392,13 @@ contains
       if (allocated(error)) return
       if (size(values, 2) <= 1) handle%looked_at = places
       call implausible_numbers(sweep%case, sweep%grid, found)
-      if (.not. allocated(handle%told)) allocate (handle%told(0))
+      if (.not. allocated(handle%reported)) allocate (handle%reported(0))
       do i = 1, size(found)
          ! what is wrong with a value, wherever it stands
          flaw = found(i)
          flaw = flaw(index(trim(flaw(:index(flaw, ' = ') - 1)), ' ', back=.true.) + 1:)
-         if (any(handle%told == flaw)) cycle
-         handle%told = [handle%told, flaw]
+         if (any(handle%reported == flaw)) cycle
+         handle%reported = [handle%reported, flaw]
          notes = [notes, found(i)]
       end do
    end subroutine look
