@@ -40,7 +40,16 @@ def test_a_foreign_file_is_read(sweep):
 def test_a_file_of_version_2_0_0(copy):
     """It has no columns of structures: it is read and drawn as it is."""
     with h5py.File(copy, "r+") as file:
-        for name in ("contacts", "last_separation", "structure_energy", "highest_mode"):
+        for name in (
+            "contacts",
+            "last_separation",
+            "structure_energy",
+            "highest_mode",
+            "bounces",
+            "bouncing_time",
+            "bouncing_time_error",
+            "bounces_end",
+        ):
             del file["summary"][name]
         file.attrs["version"] = "2.0.0"
     found = vcor.open(copy)

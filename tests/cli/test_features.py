@@ -33,6 +33,8 @@ FEATURES = {
     "volterra_order = 2": ("", STILL, "", "volterra_order = 2, volterra_coefficient = 0.1", STEEL + RUBBER),
     "continue_after_separation": ("", STILL, "", "continue_after_separation = .true.", STEEL + RUBBER),
     "&target": ("", STILL, "", "", STEEL + RUBBER + "&target body = 'block', mass = 0.1 /\n"),
+    "waves = 'relaxing'": ("", ", waves = 'relaxing'", "", "", STEEL + RUBBER),
+    "bounces": (", gravity = 9.81, bounces = 3", STILL, "", "", STEEL + RUBBER),
 }
 KEYS = {"gravity": ("impact", "9.81"), "time_step": ("solver", "1e-5"), "volterra_coefficient": ("solver", "0.1"),
         "form": ("solver", "a"), "quadrature": ("solver", "rectangle"), "volterra_order": ("solver", "1"),
@@ -86,7 +88,7 @@ def test_what_a_method_reads(table, vcor, key, method):
 
 def test_features_that_exclude_each_other(table, vcor):
     """Each of the pairs, by a method that solves both alone."""
-    assert len(table["exclusions"]) == 7
+    assert len(table["exclusions"]) == 13
     for pair in table["exclusions"]:
         one, other = case_of(pair["one"]), case_of(pair["other"])
         both = other.replace("&contact  /", "&contact law = 'receding' /") if "law" in pair["one"] else other
@@ -94,6 +96,8 @@ def test_features_that_exclude_each_other(table, vcor):
             both = other.replace(RUBBER, DASHPOT)
         if pair["other"] == "&target":
             both = one + "&target body = 'block', mass = 0.1 /\n"
+        if pair["other"] == "bounces":
+            both = one.replace("velocity = 5", "velocity = 5, gravity = 9.81, bounces = 3")
         assert both != one and both != other
         vcor.write(both)
         # what direct does not solve alone is refused for that

@@ -1,6 +1,7 @@
 """Help, and the version."""
 
 import json
+import re
 import tomllib
 
 import pytest
@@ -101,7 +102,8 @@ def test_words_of_the_input(vcor, word, groups, keys):
     if groups is None:
         assert page.startswith("usage: vcor material")
         return
-    lines = page.splitlines()
+    # so does one of the bounces
+    lines = page.partition("\nColumns of STEM_bounces.csv")[0].splitlines()
     assert [line.split()[0] for line in lines if line.startswith("&")] == [f"&{name}" for name in groups]
     assert [line.split()[0] for line in lines if line[:4].strip() and line[0] == " "] == keys
     assert set(lines) <= set(vcor.succeeds("help", "input").splitlines())
@@ -123,8 +125,8 @@ def test_words_near_those_of_the_input(vcor, word, says):
 def test_words_of_the_output(vcor, word):
     """A column, or what the status says, is shown as on the page of the output."""
     whole = vcor.succeeds("help", "output").splitlines()
-    # a column of the history of the same name comes second
-    page = vcor.succeeds("help", word).partition("Columns of STEM.csv")[0].splitlines()
+    # a column of the history or of the bounces of the same name comes second
+    page = re.split(r"Columns of STEM(?:_bounces)?\.csv", vcor.succeeds("help", word))[0].splitlines()
     assert all(line in whole for line in page if line)
     names = [line.split()[0] for line in page if line.startswith("   ") and line[3] != " "]
     assert word in names

@@ -159,9 +159,9 @@ def test_no_separation(vcor, method):
     assert "no_separation" in done.out
     row = last_row(vcor.folder, "case_summary.csv")
     assert row.pop("status") == "no_separation"
-    assert int(row.pop("steps")) > 0 and row.pop("contacts") == "0"
+    assert int(row.pop("steps")) > 0 and row.pop("contacts") == row.pop("bounces") == "0"
     assert float(row.pop("initial_energy")) > 1.6
-    assert row.pop("validity") == row.pop("validity_cause") == "none"
+    assert row.pop("validity") == row.pop("validity_cause") == row.pop("bounces_end") == "none"
     assert set(row.values()) == {"nan"}
     with h5py.File(vcor.folder / "case.h5") as file:
         assert file["summary/status"].asstr()[0] == "no_separation"

@@ -16,6 +16,10 @@ SUMMARY = {
     "contacts": "1",
     "last_separation": "s",
     "structure_energy": "J",
+    "bounces": "1",
+    "bouncing_time": "s",
+    "bouncing_time_error": "s",
+    "bounces_end": "",
     "min_frequency": "rad/s",
     "inelasticity": "1",
     "loss_tangent": "1",
@@ -63,5 +67,5 @@ HISTORY = {
     "contact_radius": "m",
 }
 
-INTEGERS = {"contacts", "steps"}
-TEXTS = {"status", "validity", "validity_cause"}
+INTEGERS = {"bounces", "contacts", "steps"}
+TEXTS = {"bounces_end", "status", "validity", "validity_cause"}

@@ -256,9 +256,12 @@ contains
       real(wp), allocatable :: values(:)
 
       values = values_of(outcome)
-      ! validity and its cause are texts, contacts and steps are counted in any case
+      ! validity and its cause are texts, steps are counted in any case
       values = values(:size(values) - 4)
-      values = [values(:quantity_place('contacts') - 1), values(quantity_place('contacts') + 1:)]
+      ! so are contacts and bounces, whose end is a text
+      values(quantity_place('contacts')) = values(quantity_place('contact_time'))
+      values(quantity_place('bounces')) = values(quantity_place('contact_time'))
+      values(quantity_place('bounces_end')) = values(quantity_place('contact_time'))
    end function values_without_status
 
    !> Names of statuses

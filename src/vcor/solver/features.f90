@@ -117,6 +117,9 @@ module vcor_solver_features
       refusal_t([coupled, 0, 0], of_frozen_plate, &
       "method = 'coupled' solves waves = 'body' or 'none', not those of a thin plate", &
       'method waves'), &
+      refusal_t([coupled, 0, 0], of_relaxing_plate, &
+      "method = 'coupled' solves waves = 'body' or 'none', not those of a thin plate", &
+      'method waves'), &
       refusal_t([coupled, 0, 0], of_second_term, &
       "method = 'coupled' is linear theory, a second term of the Volterra series is not", &
       'volterra_order method waves'), &
