@@ -147,6 +147,7 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
+    """Import a part of the package when it is used first."""
     if name in ("page", "plot"):
         return importlib.import_module(f"vcor.{name}")
     if name not in _LATER:

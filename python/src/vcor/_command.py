@@ -38,6 +38,7 @@ class Parser(argparse.ArgumentParser):
     elsewhere: Mapping[str, str] = {}
 
     def __init__(self, name: str, **options: Any) -> None:
+        """A parser of `vcor NAME`, whose options are written in full."""
         super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
         self.add_argument("--version", action="version", version=f"vcor {__version__}")
 

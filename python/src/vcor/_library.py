@@ -208,6 +208,7 @@ class Handle(c_void_p):
 
     # what modules hold may be gone when the interpreter ends
     def __del__(self, free: Any = _library.vcor_free) -> None:
+        """Release the case."""
         if self:
             free(self)
 
@@ -220,11 +221,13 @@ class _Worker:
     """A thread for the calls of the main thread, which Ctrl-C can only reach while it waits."""
 
     def __init__(self) -> None:
+        """Begin the thread; it waits for calls."""
         self._jobs: queue.SimpleQueue[Callable[[], int] | None] = queue.SimpleQueue()
         self._codes: queue.SimpleQueue[int] = queue.SimpleQueue()
         threading.Thread(target=self._work, name="vcor", daemon=True).start()
 
     def _work(self) -> None:
+        """Make the calls, one after the other."""
         while (job := self._jobs.get()) is not None:
             self._codes.put(job())
 

@@ -42,12 +42,14 @@ def option(name: str, value: Any = None) -> str:
 
 
 def _plain(value: Any) -> str:
+    """A value of an option as the shell has it."""
     if isinstance(value, tuple):
         return ":".join(map(_plain, value))
     return "VALUE" if value is ... else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _python(value: Any) -> str:
+    """A value of an option as Python has it."""
     if isinstance(value, Mapping):
         return f"{{{', '.join(f'{key!r}: {_python(one)}' for key, one in value.items())}}}"
     if isinstance(value, tuple):

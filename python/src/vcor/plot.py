@@ -774,6 +774,7 @@ def _scale(unit: str, *values: Any) -> tuple[float, str]:
 
 
 def _with_unit(text: str, unit: str) -> str:
+    """A label with its unit, if there is one."""
     return f"{text} [{unit}]" if unit else text
 
 

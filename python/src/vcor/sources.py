@@ -26,6 +26,11 @@ class Result:
     """Results of a file, of a case that is solved, of a sweep, or materials of a file."""
 
     def __init__(self, source: Source, *, celsius: bool = False) -> None:
+        """Open a file, or take a Dataset or a case, which is solved.
+
+        Temperatures are in C where `celsius`, else in K. FileError or InputError: a file that
+        cannot be read, or has no results.
+        """
         self._held: dict[str, xr.Dataset] = {}
         self.groups: set[str] = set()
         if isinstance(source, xr.Dataset):

@@ -1,8 +1,8 @@
 !> Conversion of written values to the kind of a key, and the check of their ranges
 module vcor_case_values
-   use vcor_case_case, only : entry_t
    use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, text_key, &
       wanted
+   use vcor_case_entries, only : entry_t
    use vcor_case_namelist, only : value_t, values_in
    use vcor_number, only : contains_number, is_computable, looks_numeric, read_real, real_text
    use vcor_kinds, only : wp

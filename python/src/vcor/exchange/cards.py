@@ -315,6 +315,7 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor card`: write the card of a material of a case, or read a card as a &material."""
     nu = options.poisson_ratio
     text = _text.read_text(options.file)
     if not head_of(text) and re.search(r"(?im)^\s*&material\b", text):

@@ -257,6 +257,7 @@ def _sheets(name: str, sheets: Iterable[Any]) -> Grid:
 
 
 def _cell(value: Any) -> str:
+    """Text of a cell of a spreadsheet; empty for none and for an error."""
     if value is None or value in _ERRORS or value != value:
         return ""
     if isinstance(value, bool):

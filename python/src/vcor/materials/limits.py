@@ -134,6 +134,7 @@ class _Profile:
     """The least sum of squares while a parameter is held at values to one side of the best."""
 
     def __init__(self, fit: Fit, i: int, side: int, held: Sequence[int]) -> None:
+        """Take parameter `i` of a fit, to the side +1 or -1; those in `held` do not vary."""
         self.fit, self.i, self.side = fit, i, side
         covariance, x, problem = fit.covariance(held), fit.x, fit.problem
         self.others = [j for j in range(len(x)) if j != i and j not in held]

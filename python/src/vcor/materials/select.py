@@ -97,6 +97,10 @@ class Condition:
 
 
 def _kelvin(text: str, what: str) -> float:
+    """Temperature [K] of a condition.
+
+    UsageError: a text that is no temperature.
+    """
     label = read_label(text)
     if not math.isfinite(label.kelvin):
         raise UsageError(f"{option('where')}: found '{what:.80}', expected temperatures such as "

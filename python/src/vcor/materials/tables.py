@@ -86,6 +86,11 @@ class Choice:
         files: int = 1,
         where: Where = None,
     ) -> None:
+        """Take the `columns`, `units` and `where` that a user gives to a command or function.
+
+        `files` is the number of files that share them: what one lacks may stand in another.
+        UsageError: a name of no quantity.
+        """
         #: Which rows are taken
         self.where = conditions(where)
         #: Whether what one file lacks may stand in another
@@ -238,6 +243,7 @@ def _named(key: str) -> tuple[str, float]:
 
 
 def _matches(head: Head, text: str) -> bool:
+    """Whether a text is the head of a column, with or without its unit."""
     given = plain(text)
     return given != "" and given in (plain(head.text), plain(re.sub(r"[\[(/].*", "", head.text)))
 

@@ -82,6 +82,7 @@ class Field:
     """Widgets of a value."""
 
     def __init__(self, form: Form, address: str, key: Key) -> None:
+        """Make the widgets of the key `key` at `address`."""
         self._form, self.address, self.key = form, address, key
         said = [key.meaning]
         if key.range:
@@ -134,6 +135,7 @@ class Field:
         self.fault.visible = bool(message)
 
     def _options(self, case: Case) -> Any:
+        """Words of a Select: materials of the case and the library, or choices with meanings."""
         key = self.key
         if key.name == "material":
             own = self._form.names(case)
@@ -192,6 +194,7 @@ class Form:
     def __init__(
         self, case: Case, changed: Callable[[], None], styles: list[InlineStyleSheet]
     ) -> None:
+        """Make the widgets of all keys of the case."""
         self.case, self._changed, self.styles = case, changed, styles
         #: Names of materials that were added by the page from its library
         self._own = _names(case)
@@ -229,6 +232,7 @@ class Form:
         self.refresh()
 
     def _section(self, title: str) -> Iterator[Any]:
+        """Widgets of a section: Ball, Surface, Impact or Mechanics."""
         yield Div(text=f"<h2>{title}</h2>", stylesheets=self.styles)
         if title == "Surface":
             kinds = list(SURFACES)
@@ -285,6 +289,7 @@ class Form:
         yield box
 
     def _addresses(self, group: Group) -> Iterator[str]:
+        """Addresses of a group that the model of the case has."""
         model = self.case[f"{group.name}.{group.selector}"] if group.selector else None
         for key in group.keys_of(None if model is None else str(model)):
             # of a structure without a body nothing else is known
@@ -363,6 +368,7 @@ class Form:
             self.refresh()
 
     def _take_material(self, address: str, name: str) -> None:
+        """Give a body a material of the case or the library; the library's unused ones go."""
         if name not in self.names(self.case):
             self.case.add(offered()[name].read())
         self.case[address] = "'" + name.replace("'", "''") + "'"

@@ -121,6 +121,7 @@ class Table:
         yield from map(list, itertools.product(*starts))
 
     def _index(self, place: Sequence[int]) -> int:
+        """Index of a place of the grid in a flat list."""
         return int(np.ravel_multi_index(tuple(place), self.counts))
 
 

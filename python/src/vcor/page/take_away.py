@@ -95,6 +95,7 @@ def differences(case: Case, other: Case) -> list[str]:
 
 
 def _quoted(word: str) -> str:
+    """A word as a shell needs it."""
     if re.fullmatch(r"[\w./=:+,()-]+", word):
         return word
     return "'" + word.replace("'", "'\\''") + "'"
