@@ -52,6 +52,8 @@ FIRST_DEGREE, FIRST_ALONG = 2, 5
 MOST_ALONG = 5
 #: Time that is announced, and that of the impacts that it is estimated from [s]
 LONG, TRIAL = 60.0, 0.3
+#: Samples of thin mechanics that their time is estimated from
+TRIED = 128
 #: Waves of thin mechanics, and what a rigid ball has of its material
 THIN_WAVES = ("hereditary", "none")
 RIGID_KEYS = ("name", "density", "poisson_ratio", "yield_strength")
@@ -130,20 +132,32 @@ def sampled(
 
 
 def _solve(plan: Plan, z: Floats, quantities: Sequence[str], threads: int | None) -> Floats:
-    return plan.case._solve_all(plan.addresses, plan.place(z), list(quantities), threads, None)
+    return _solve_sorted(plan.case, plan.addresses, plan.place(z), quantities, threads)
+
+
+def _solve_sorted(
+    case: Case, addresses: list[str], table: Floats, names: Sequence[str], threads: int | None
+) -> Floats:
+    """Columns of points, shape (points, names), those of equal Poisson's ratios one by one.
+
+    Of these the law of a layer is made once; a Saltelli sample has few different values.
+    """
+    dear = [k for k, one in enumerate(addresses) if one.lower().endswith(".poisson_ratio")]
+    order = np.lexsort(table[:, dear].T) if dear else np.arange(len(table))
+    found = np.empty((len(table), len(names)))
+    found[order] = case._solve_all(addresses, table[order], list(names), threads, None)
+    return found
 
 
 def _announce(plans: Sequence[Plan], count: int, threads: int | None) -> None:
     """Say how long the samples take, if that is long: some of all plans are solved."""
-    size, each = _cores(threads), 0.0
-    order = np.random.default_rng(0).permutation(len(plans[0].z))
-    begin = time.perf_counter()
-    while time.perf_counter() - begin < TRIAL and size <= len(order):
+    size, each, begin = _cores(threads), 0.0, time.perf_counter()
+    while time.perf_counter() - begin < TRIAL and size <= len(plans[0].z):
         start = time.perf_counter()
         for plan in plans:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                _solve(plan, plan.z[order[:size]], ["cor"], threads)
+                _solve(plan, plan.z[:size], ["cor"], threads)
         # by the largest number, in which what is made once counts least
         each, size = (time.perf_counter() - start) / (size * len(plans)), 4 * size
     say(plans[0].case, count, count * each)
@@ -256,7 +270,7 @@ class _Corrected:
         self.thin = thin_cases(self.case, self.addresses)
         #: Results of thin mechanics at the samples of each plan, where they were needed
         self.of_samples: dict[str, list[Floats]] = {}
-        self.solved, self.seconds, self.thin_seconds = 0, 0.0, 0.0
+        self.solved, self.seconds = 0, 0.0
         #: What results of each plan are divided by, shape (plans, quantities): those at its middle
         self.size = np.stack([np.where(plan.middle == 0, 1.0, plan.middle) for plan in plans])
         self.thin_size = {
@@ -273,7 +287,7 @@ class _Corrected:
             _announce(self.plans, count, self.threads)
             return None
         names = list(self.thin)
-        points, before = self._points(self.design.random, number, announced=count), math.inf
+        points, before = self._points(self.design.random, number, announced=True), math.inf
         while True:
             fresh = self._points(self.fresh, further)
             if min(len(points.z) - number, len(fresh.z) - further) < 0:
@@ -294,7 +308,7 @@ class _Corrected:
                     at = functools.partial(self._at, correction)
                     return Sampled(found, at, self.solved, len(fresh.z), error)
             if math.isinf(worst):
-                why = "thin mechanics have no result at some samples"
+                why = "thin mechanics have no results of one kind at all samples"
                 break
             # at the rate of the last round, a half at least; the first one has none
             rate = min(0.5, worst / before) if math.isfinite(before) else 0.25
@@ -358,13 +372,13 @@ class _Corrected:
             if not given:
                 found = thin.case._solve(given, np.empty((1, 0)), self.columns, 1)[0]
                 return np.repeat(found, len(which), axis=0)
-            return thin.case._solve_all(given, table, self.columns, self.threads, None)
+            return _solve_sorted(thin.case, given, table, self.columns, self.threads)
 
-    def _points(self, shares: Callable[[int], Floats], number: int, announced: int = 0) -> _Points:
+    def _points(self, shares: Callable[[int], Floats], number: int, announced: bool = False) -> _Points:
         """A number of points at shares of the distributions, and their results.
 
-        Values that make no impact are left out. The first points say how long all take, with a
-        number of samples of thin mechanics.
+        Values that make no impact are left out. The first points say how long all take, with the
+        samples of thin mechanics.
         """
         state = self.columns.index("status")
         which, z = np.empty(0, dtype=np.intp), np.empty((0, len(self.coordinates.uniform)))
@@ -378,9 +392,7 @@ class _Corrected:
             if self.along:
                 of = (share[:, -1] * len(self.plans)).astype(np.intp)
                 new[:, -1] = self._place_along(of)
-            begin = time.perf_counter()
             found = {name: self._results_thin(one, of, new) for name, one in self.thin.items()}
-            each = (time.perf_counter() - begin) / (len(self.thin) * number)
             kept = np.all([one[:, state] != INVALID for one in found.values()], axis=0)
             kept &= np.cumsum(kept) <= number - len(z)
             which, z = np.concatenate([which, of[kept]]), np.vstack([z, new[kept]])
@@ -392,7 +404,7 @@ class _Corrected:
             if announced and part.start == 0:
                 more = len(self.plans) * OTHERS * len(self.plans[0].addresses)
                 seconds = (len(z) + more) * (time.perf_counter() - begin) / trial
-                say(self.case, len(z) + more, seconds + announced * each)
+                say(self.case, len(z) + more, seconds + self._time_of_samples())
         self.seconds += time.perf_counter() - begin
         return _Points(which, z, thin, np.vstack(exact))
 
@@ -437,15 +449,24 @@ class _Corrected:
         kind.
         """
         if name not in self.of_samples:
-            self.of_samples[name] = [
-                self._results_thin(self.thin[name], np.full(len(plan.z), i), plan.z)
-                for i, plan in enumerate(self.plans)
-            ]
+            self.of_samples[name] = np.split(self._samples_of(name), len(self.plans))
         known = np.vstack(self.of_samples[name])
         status, contacts = (known[:, self.columns.index(column)] for column in STATE)
         good = status == SEPARATED
         return bool(good.any() and (good | (status == INVALID)).all()
                     and np.ptp(contacts[good]) == 0)  # fmt: skip
+
+    def _samples_of(self, name: str, most: int | None = None) -> Floats:
+        """Columns of thin mechanics at the samples of all plans, or at the first ones of each."""
+        z = [plan.z[:most] for plan in self.plans]
+        which = np.repeat(np.arange(len(z)), len(z[0]))
+        return self._results_thin(self.thin[name], which, np.vstack(z))
+
+    def _time_of_samples(self) -> float:
+        """About how long the samples of thin mechanics take [s]."""
+        size, begin = max(1, TRIED // len(self.plans)), time.perf_counter()
+        self._samples_of(next(iter(self.thin)), size)
+        return (time.perf_counter() - begin) * len(self.plans[0].z) / size
 
     def _at_samples(self, correction: Correction, i: int, names: list[str]) -> Floats:
         """Results of the samples of a plan; nan where the values make no impact."""
