@@ -159,7 +159,7 @@ class Spread:
             raise InputError(f"{option('covariance')}: the matrix is not positive")
         if weights[-1] > UNDETERMINED**2:
             names = [fit.addresses[i] for i in kept]
-            raise InputError(
+            raise NumericalError(
                 f"{option('covariance')}: the fit does not determine "
                 f"{product(names, vectors[:, -1])}, which has a standard error of "
                 f"{percent(math.sqrt(weights[-1]))}: fix a parameter of it in the fit, "

@@ -374,7 +374,9 @@ class _Corrected:
                 return np.repeat(found, len(which), axis=0)
             return _solve_sorted(thin.case, given, table, self.columns, self.threads)
 
-    def _points(self, shares: Callable[[int], Floats], number: int, announced: bool = False) -> _Points:
+    def _points(
+        self, shares: Callable[[int], Floats], number: int, announced: bool = False
+    ) -> _Points:
         """A number of points at shares of the distributions, and their results.
 
         Values that make no impact are left out. The first points say how long all take, with the
