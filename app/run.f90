@@ -4,8 +4,9 @@ module vcor_app_run
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : report
-   use vcor_app_validity, only : about_numbers, measures_remark, &
-      measures_report, mechanics_of, name_of_exact, warn_of_data
+   use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
+      name_of_exact
+   use vcor_app_warnings, only : warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t

@@ -568,3 +568,43 @@ def test_help(vcor):
     assert "one of plate, beam, rod, block," in help_text
     keys = [one["name"] for one in json.loads(vcor("help", "--json").out)["summary"]]
     assert {"contacts", "last_separation", "structure_energy", "highest_mode"} <= set(keys)
+
+
+# A ball of 24 mm on an anvil that it leaves for a moment within its contact, or just not
+ANVIL = f"""&impact velocity = 0.5 /
+&sphere radius = 0.012, material = 'steel' /
+&plate material = 'steel' /
+&target body = 'block', mass = 0.02, stiffness = 43625040, damping = 19.926479 /
+&material {STEEL} /
+"""
+
+
+def test_short_steps_do_not_drown_in_rounding(vcor):
+    """A contact that only just ends: s all but has a double root, which 1e-16 moves by 1e-8."""
+    names = ["contact_time", "cor_sphere", "contact_time_error", "steps"]
+    stiffer = ["--set", "target.stiffness=43625089", "--set", "solver.method=direct"]
+    found = [
+        numbers(vcor, ANVIL, names, *stiffer, "--set", f"solver.time_step={step}")
+        for step in (1.2e-9, 6e-10)
+    ]  # fmt: skip
+    # the errors of order 2.5 are 4e-10 and 7e-11; rounding that adds up over the steps is 7e-9
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-9, abs=0)
+    assert found[0][1] == pytest.approx(found[1][1], abs=1e-12)
+    sharp = numbers(vcor, ANVIL, names, *stiffer, "--set", "solver.accuracy=1e-9")
+    # shorter ones are tried as long as they help
+    assert sharp[3] < 1e6
+    assert sharp[0] == pytest.approx(found[1][0], abs=sharp[2] + found[1][2])
+
+
+@pytest.mark.parametrize("stiffness", [43625030, 43625040])
+def test_contact_that_only_just_ends(vcor, stiffness):
+    """The end of the first contact is another one at a velocity next to it, and the error says so."""
+    found = [
+        numbers(vcor, ANVIL, ["contact_time", "contact_time_error"], "--set",
+                "solver.method=direct", "--set", "solver.accuracy=1e-9", "--set",
+                f"target.stiffness={stiffness}", "--set", f"impact.velocity={velocity!r}")
+        for velocity in (0.5 * (1 - 1e-6), 0.5, 0.5 * (1 + 1e-6))
+    ]  # fmt: skip
+    times = [one[0] for one in found]
+    assert max(times) > 1.1 * min(times)
+    assert found[1][1] > 0.9 * max(abs(time - times[1]) for time in times)

@@ -6,8 +6,9 @@ program test_case
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row

@@ -39,7 +39,7 @@ class Error(Exception):
     """An error of vcor; its text is the line of the program, `code` the program's exit code."""
 
     code = 1
-    #: What there is of a result: the summary of an impact that does not separate, else None
+    #: Summary of an impact that does not separate, else None
     result: Any = None
 
     def __init__(self, message: str = "") -> None:
@@ -208,6 +208,7 @@ class Handle(c_void_p):
 
     # what modules hold may be gone when the interpreter ends
     def __del__(self, free: Any = _library.vcor_free) -> None:
+        """Release the case."""
         if self:
             free(self)
 
@@ -220,16 +221,18 @@ class _Worker:
     """A thread for the calls of the main thread, which Ctrl-C can only reach while it waits."""
 
     def __init__(self) -> None:
+        """Begin the thread; it waits for calls."""
         self._jobs: queue.SimpleQueue[Callable[[], int] | None] = queue.SimpleQueue()
         self._codes: queue.SimpleQueue[int] = queue.SimpleQueue()
         threading.Thread(target=self._work, name="vcor", daemon=True).start()
 
     def _work(self) -> None:
+        """Make the calls, one after the other."""
         while (job := self._jobs.get()) is not None:
             self._codes.put(job())
 
     def code(self, job: Callable[[], int]) -> int:
-        """What a call returns."""
+        """Code that a call returns."""
         self._jobs.put(job)
         while True:
             # a signal just before a wait does not end it

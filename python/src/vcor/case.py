@@ -141,6 +141,10 @@ class Case:
     page: ClassVar[Callable[..., Any]]
 
     def __init__(self, source: str | Groups, *, name: str = "case.nml") -> None:
+        """Read the text of a case, or groups by their names; `name` stands in messages.
+
+        InputError: what the text or the groups have is wrong, or `source` is neither.
+        """
         if isinstance(source, Mapping):
             source = namelists(source)
         elif not isinstance(source, str) or "&" not in source:
@@ -564,7 +568,7 @@ class Case:
         return _dataset(variables, described, self._attrs(coords))
 
     def _attrs(self, coords: Mapping[str, tuple[str, Floats]]) -> dict[str, str]:
-        """What the program writes at the root of a file."""
+        """Attributes that the program writes at the root of a file."""
         try:
             text = self.text(complete=True)
         except InputError:

@@ -5,9 +5,10 @@ module vcor_c_api_handle
    use vcor_c_api_values, only : array_at, demand
    use vcor_case_address, only : material_names, resolve, swept_addresses
    use vcor_case_body, only : material_of_case
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, groups, real_key
    use vcor_case_checks, only : note_length, validate
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_validity, only : surroundings_t
    use vcor_io_data_file, only : read_data

@@ -19,19 +19,18 @@ module vcor_case_problem
    use vcor_case_case, only : case_t
    use vcor_case_cause, only : explain
    use vcor_case_inputs, only : inputs_t, is_same, of_plate, of_sphere, of_target, &
-      positive_or_zero, shape_cone, shape_power, shape_punch, shape_sphere, shape_true_sphere, &
-      target_beam, target_block, target_none, target_plate, waves_body
+      positive_or_zero, target_beam, target_block, target_none, target_plate, waves_body
    use vcor_case_structure, only : build_structure, highest_of_list
    use vcor_case_reader, only : read_inputs
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus
    use vcor_impact_outcome, only : none, outcome_t
-   use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law, profile_factor, &
-      punch_factor, sphere_factor
+   use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_face, only : base_free, base_half_space, face_t, new_face
    use vcor_impact_layer_law, only : layer_t, lay, profile_t
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_shape, only : describe_shape, shape_sphere, shape_true_sphere
    use vcor_impact_structure, only : structure_t
    use vcor_impact_target, only : new_plate, waves_none
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
@@ -268,7 +267,6 @@ contains
       real(wp) :: exponent
 
       factor = 0.0_wp
-      exponent = law%start_exponent
       ! a sweep may pass from a second sphere to a seat
       if (inputs%waves_are_chosen .and. (inputs%surface_radius > 0.0_wp &
           .eqv. inputs%waves == waves_body)) then
@@ -284,19 +282,8 @@ contains
             about='surface_radius base')
          if (allocated(error)) return
       end if
-      select case (inputs%shape)
-      case (shape_cone)
-         exponent = 2.0_wp
-         factor = cone_factor(inputs%half_angle)
-      case (shape_punch)
-         exponent = 1.0_wp
-         factor = punch_factor(inputs%punch_radius)
-      case (shape_power)
-         exponent = 1.0_wp + 1.0_wp/inputs%profile_power
-         factor = profile_factor(inputs%profile_coefficient, inputs%profile_power)
-      case default
-         call sphere_factor(inputs%radius, inputs%surface_radius, factor, error)
-      end select
+      call describe_shape(inputs%shape, inputs%radius, inputs%surface_radius, &
+         inputs%shape_numbers, exponent, factor, error)
       if (.not. allocated(error)) call new_contact_law(law, exponent, inputs%receding, error)
       if (.not. allocated(error)) call describe_layer(self, inputs, layer, error)
       if (allocated(error)) return

@@ -135,7 +135,7 @@ module vcor_impact_outcome
       !> Index in `thresholds` of the decisive measure; 0: none
       integer :: validity_cause = 0
    contains
-      procedure :: settle
+      procedure :: come_to_rest
       procedure :: is_finite
       procedure :: misses
       procedure :: gains_energy
@@ -223,7 +223,7 @@ contains
 
    !> Take the indentation of a sphere that rests from the balance of spring and weight: the
    !> computation may end while the material still creeps. A fluid keeps its last indentation
-   pure subroutine settle(self, impact)
+   pure subroutine come_to_rest(self, impact)
       !> The outcome of an impact that ended at rest
       class(outcome_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -233,7 +233,7 @@ contains
          /(impact%factor*impact%modulus%rubbery()))
       self%max_indentation = max(self%max_indentation, self%residual_indentation)
       self%residual_ratio = self%residual_indentation/self%max_indentation
-   end subroutine settle
+   end subroutine come_to_rest
 
    !> Whether all numbers are finite: energies, for example, may overflow
    pure function is_finite(self)

@@ -124,6 +124,8 @@ module vcor_impact_trajectory
       real(wp), allocatable :: map(:, :)
    contains
       procedure :: reserve
+      procedure :: begin
+      procedure :: add
       procedure :: add_map
       procedure :: stop_at_rest
       procedure :: is_stuck
@@ -158,6 +160,31 @@ contains
          allocate (self%state(columns, 0:nodes), self%share(0:nodes))
       end if
    end subroutine reserve
+
+   !> Store the state at first contact, node 0
+   pure subroutine begin(self, state)
+      class(trajectory_t), intent(inout) :: self
+      real(wp), intent(in) :: state(columns)
+
+      call self%reserve(1)
+      self%final = 0
+      self%state(:, 0) = state
+      self%share(0) = 0.0_wp
+   end subroutine begin
+
+   !> Store the state at the next node
+   pure subroutine add(self, state, share)
+      class(trajectory_t), intent(inout) :: self
+      real(wp), intent(in) :: state(columns)
+      !> Its share in the impulse of the contact [N s]; absent: 0
+      real(wp), intent(in), optional :: share
+
+      call self%reserve(self%final + 1)
+      self%final = self%final + 1
+      self%state(:, self%final) = state
+      self%share(self%final) = 0.0_wp
+      if (present(share)) self%share(self%final) = share
+   end subroutine add
 
    !> Record the map of the next panel
    pure subroutine add_map(self, map)

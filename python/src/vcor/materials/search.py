@@ -56,6 +56,11 @@ class Problem:
         self, case: Case, free: Sequence[str], blocks: Sequence[Block],
         errors: Mapping[str, float], bar: Any,
     ) -> None:  # fmt: skip
+        """Set up the search for `free`, addresses of numbers > 0, from their values in the case.
+
+        `errors` as in `Noise`; `bar` shows progress. UsageError: a first guess that is not > 0.
+        InputError: fewer data than parameters, or none left to estimate their scatter from.
+        """
         self.case, self.free, self.blocks, self.bar = case, list(free), list(blocks), bar
         self.impacts = [block for block in blocks if isinstance(block, Impacts)]
         #: Velocities of the first impacts, or of the case [m/s]
@@ -126,6 +131,7 @@ class Problem:
         return np.split(values, ends)
 
     def _errors_of_model(self, x: Floats) -> Floats:
+        """Errors of the solutions at x, of each datum, shape (data,)."""
         if self.corrected:
             own = iter(self.corrected.errors)
             return np.concatenate([

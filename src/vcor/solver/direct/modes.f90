@@ -5,9 +5,11 @@
 !>
 !>     y_n = A y_{n-1} + B_0 F_{n-1} + B_1 F_n + B_2 (F_n - 2 F_{n-1} + F_{n-2})
 !>
-!> with the exponential of the matrix of the differential equations of state and force. A mode that
-!> the steps do not resolve follows the force as a spring: left undamped, it would ring with the
-!> corners of the parabolas, and make a sphere hop from node to node.
+!> with the exponential of the matrix of the differential equations of state and force. Its part
+!> A - 1 is computed and added: the rounding of A itself would be the same in every step, and add up
+!> to the number of steps. A mode that the steps do not resolve follows the force as a spring: left
+!> undamped, it would ring with the corners of the parabolas, and make a sphere hop from node to
+!> node.
 module vcor_solver_direct_modes
    use vcor_impact_structure, only : state_of_modes_t, vibration_t
    use vcor_kinds, only : wp
@@ -21,7 +23,7 @@ module vcor_solver_direct_modes
       !> Their state, shape (number, components), and the same at the node being solved, without the
       !> force there
       real(wp), allocatable :: y(:, :), known(:, :)
-      !> Step from state to state, shape (number, components, components)
+      !> Step from state to change of the state, A - 1, shape (number, components, components)
       real(wp), allocatable :: a(:, :, :)
       !> Responses to the force at the start of the step and at the node before, shape
       !> (number, components), and at its end
@@ -73,6 +75,8 @@ contains
          associate (square => vibration%square(n), damping => vibration%damping(n), &
                     yield => vibration%yield(n), kick => vibration%kick(n))
             if (sqrt(square)*dt > fastest .and. damping**2 < square) then
+               self%oscillators%a(n, 1, 1) = -1.0_wp
+               self%oscillators%a(n, 2, 2) = -1.0_wp
                self%oscillators%end(n, :) = [(yield + damping*kick)/square, -kick]
                cycle
             end if
@@ -138,8 +142,8 @@ contains
       self%end(n, :) = answer(:, 2) + answer(:, 3)
    end subroutine set_step
 
-   !> Replace a matrix by its exponential: Taylor's series of the matrix over a power of two,
-   !> squared
+   !> Replace a matrix M by exp(M) - 1: Taylor's series of the matrix over a power of two, squared
+   !> as (1 + E)^2 - 1 = 2 E + E^2
    pure subroutine exponentiate(matrix)
       real(wp), intent(inout) :: matrix(:, :)
 
@@ -150,18 +154,15 @@ contains
       integer :: squarings, i
 
       squarings = max(0, exponent(maxval(sum(abs(matrix), 1))/small))
-      part = 0.0_wp
-      do i = 1, size(matrix, 1)
-         part(i, i) = 1.0_wp
-      end do
-      total = part
       matrix = matrix*0.5_wp**squarings
-      do i = 1, terms
+      part = matrix
+      total = part
+      do i = 2, terms
          part = matmul(part, matrix)/real(i, wp)
          total = total + part
       end do
       do i = 1, squarings
-         total = matmul(total, total)
+         total = 2.0_wp*total + matmul(total, total)
       end do
       matrix = total
    end subroutine exponentiate
@@ -209,6 +210,9 @@ contains
                   + self%before(n, i)*force(2)
             end do
          end if
+         do n = 1, size(self%y, 1)
+            self%known(n, i) = self%known(n, i) + self%y(n, i)
+         end do
       end do
    end subroutine step
 
