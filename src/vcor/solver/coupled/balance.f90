@@ -38,8 +38,8 @@ module vcor_solver_coupled_balance
       real(wp), allocatable, private :: now(:, :)
       !> G of a hat with itself and with the next [m], shape (hats)
       real(wp), allocatable, private :: same(:), next(:)
-      !> Factors of 1 + G W/w as of `factor`, shape (n, n), and whether they are those of the springs
-      !> that push
+      !> Factors of 1 + G W/w as of `factor`, shape (n, n), and whether they are those of the
+      !> springs that push
       real(wp), allocatable, private :: system(:, :)
       integer, allocatable, private :: pivots(:)
       logical, private :: is_factored = .false.

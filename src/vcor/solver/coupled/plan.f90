@@ -26,9 +26,9 @@ contains
 
    !> Mesh of a level: twice the steps of the level before, with more springs and hats. The edge of
    !> the contact lies between springs, so that few suffice: from 192 to 112 the coefficient of
-   !> restitution of 50 random impacts changes by 1e-6 at most. With a dashpot the pressure ends with
-   !> a step there, and 112 springs would err by up to 2e-5. The response of a layer varies over its
-   !> thickness, which the longest hats resolve
+   !> restitution of 50 random impacts changes by 2e-6 at most. With a dashpot the pressure ends
+   !> with a step there, and 112 springs would err by up to 2e-5. The response of a layer varies
+   !> over its thickness, which the longest hats resolve
    pure function mesh_of(level, face, window, radius) result(mesh)
       !> Level, from 0
       integer, intent(in) :: level
