@@ -204,8 +204,8 @@ contains
       p = nodes(lags, 1.0_wp/rate)*(real(face%per_shear_speed(cmplx(rate, kind=wp)), wp)/rate)
    end function passing_nodes
 
-   !> Divide the wavenumbers from the last panel on into panels, short where the response of any frequency has a pole
-   !> nearby and where a layer resonates.
+   !> Divide the wavenumbers from the last panel on into panels, short where the response of any
+   !> frequency has a pole nearby and where a layer resonates.
    !>
    !> A panel over which the products of hats are integrated at once integrates the response to
    !> twice as many digits as a polynomial through its nodes has. A longer one has the response as
