@@ -23,7 +23,8 @@ module vcor_app_commands
       part_t("summary", "solve impacts and write the results"), &
       part_t("", "Solves the impact of each case and writes three files: STEM_summary.csv (one " &
       //"row per impact), STEM.csv (the time history) and STEM.h5 (both). STEM is the name of " &
-      //"the case file without its ending."), &
+      //"the case file without its ending. With impact.bounces a fourth one, STEM_bounces.csv, " &
+      //"has a row per bounce."), &
       part_t("", "A file that has only &material groups is not a case: it completes the cases " &
       //"before it. `vcor check`, `vcor material` and `vcor verify` accept such files, too."), &
       part_t("", "A case with &sweep groups is solved at every point of its grid. The summary " &

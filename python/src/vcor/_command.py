@@ -98,6 +98,8 @@ def one_line() -> Iterator[None]:
     spoken = OPTIONS.set(OPTIONS.get())
     try:
         with warnings.catch_warnings():
+            # notes are a part of what a command says, whatever PYTHONWARNINGS is
+            warnings.simplefilter("default", UserWarning)
             warnings.showwarning = _note  # type: ignore[assignment]
             yield
     except Error as error:

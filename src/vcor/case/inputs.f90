@@ -300,7 +300,7 @@ contains
          [b%time_step, b%end_time, b%accuracy, b%second_coefficient])) &
          .and. a%method == b%method .and. a%scheme == b%scheme .and. a%form == b%form &
          .and. a%quadrature == b%quadrature .and. (a%ghost .eqv. b%ghost) &
-         .and. (a%first_contact .eqv. b%first_contact)
+         .and. (a%first_contact .eqv. b%first_contact) .and. a%bounces == b%bounces
    end function same_settings
 
    !> A positive number; 0 if there is none

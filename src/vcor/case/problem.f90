@@ -109,6 +109,8 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(layer_t) :: layer
+      type(profile_t) :: profile
       real(wp) :: mass, factor
       logical :: is_new(3)
 
@@ -133,9 +135,11 @@ contains
          error%item = inputs%item(of_sphere)
          return
       end if
-      call set_shape(self, inputs, factor, error)
+      call set_shape(self, inputs, layer, profile, factor, error)
       if (.not. allocated(error)) call self%impact%launch(inputs%approach_velocity(), mass, &
          factor, error, positive_or_zero(inputs%gravity))
+      if (.not. allocated(error)) call lay(self%impact%law, layer, profile, factor, error, &
+         deepest_of(self%impact, inputs))
       if (.not. allocated(error)) call set_structure(self, inputs, error)
       if (allocated(error)) return
       call set_surroundings(self, inputs)
@@ -252,18 +256,36 @@ contains
          2.0_wp*inputs%half_thickness, has_waves, error)
    end subroutine build_face
 
-   !> Set the contact law of the shape of the striking body
-   subroutine set_shape(self, inputs, factor, error)
+   !> Indentation up to which the contact law is needed
+   pure function deepest_of(impact, inputs) result(s)
+      !> The impact, launched
+      type(impact_t), intent(in) :: impact
+      type(inputs_t), intent(in) :: inputs
+      !> Indentation [m]; huge: no bound is known
+      real(wp) :: s
+
+      s = huge(1.0_wp)
+      ! what moves may be struck again, and the motion after separation has no bound
+      if (inputs%target%body /= target_none .or. inputs%settings%ghost) return
+      ! the force of a second term may be less
+      if (.not. abs(inputs%settings%second_coefficient) > 0.0_wp) s = impact%deepest()
+   end function deepest_of
+
+   !> Set the power of the contact law of the shape of the striking body, and describe what it is
+   !> further
+   subroutine set_shape(self, inputs, layer, profile, factor, error)
+      !> The problem, its materials built
       type(problem_t), intent(inout) :: self
       type(inputs_t), intent(in) :: inputs
+      !> What the body presses, and its profile
+      type(layer_t), intent(out) :: layer
+      type(profile_t), intent(out) :: profile
       !> Factor K of the shape [m^(2-n)]
       real(wp), intent(out) :: factor
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(contact_law_t) :: law
-      type(layer_t) :: layer
-      type(profile_t) :: profile
       real(wp) :: exponent
 
       factor = 0.0_wp
@@ -298,7 +320,6 @@ contains
       profile%power = 0.0_wp
       if (exponent > 1.0_wp) profile%power = 1.0_wp/(exponent - 1.0_wp)
       if (inputs%shape == shape_true_sphere) profile%radius = inputs%radius
-      call lay(self%impact%law, layer, profile, factor, error)
    end subroutine set_shape
 
    !> Layer on a base, for the contact law: a half space if there is none, or its waves are solved

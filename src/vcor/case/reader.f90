@@ -284,6 +284,8 @@ contains
          settings%quadrature = text
          has = features_of_case(case)
          settings%ghost = has(of_ghost)
+         call case%get('impact', 'bounces', settings%bounces)
+         call reading%mark(case%address('impact', 'bounces'))
       end associate
       ! they count whether the method reads them or not: it refuses what it cannot take
       call put(case, inputs, 'impact', 'gravity')

@@ -170,7 +170,7 @@ contains
          associate (axis => self%grid%axes(i), key => catalogue(row))
             self%ranges(i) = key%range
             self%objections(i)%message = axis%name//' is out of range, expected '//wanted(key)
-            call self%case%oust(axis%address, always=.true.)
+            call self%case%drop_alternative(axis%address, always=.true.)
             do j = 1, size(axis%values)
                if (.not. contains_number(key%range, axis%values(j))) cycle
                call self%case%set(axis%address, axis%values(j))

@@ -160,12 +160,15 @@ class Impacts:
         errors: Floats = np.fmax(number(case, "solver.accuracy") * self.scale, found)
         return errors
 
-    def possible(self, case: Case, addresses: list[str], values: Floats) -> NDArray[np.bool_]:
-        """Whether the impact of median velocity has a result, for each row of values."""
-        one = np.argsort(self.velocity)[[len(self.velocity) // 2]]
-        found = self.quantities(case, addresses, values, self.names, one)
-        possible: NDArray[np.bool_] = np.all(np.isfinite(found[:, 0]), axis=1)
-        return possible
+    def steps(self, case: Case, addresses: list[str], values: Floats, part: float) -> Floats:
+        """Steps of an impact for each row of values, inf without a result.
+
+        By the part of the impacts that are slower than it: 0 is the slowest one, 1 the fastest.
+        """
+        one = np.argsort(self.velocity)[[round(part * (len(self.velocity) - 1))]]
+        found = self.quantities(case, addresses, values, [*self.names, "steps"], one)[:, 0]
+        steps: Floats = np.where(np.isfinite(found).all(axis=1), found[:, -1], np.inf)
+        return steps
 
     def quantities(
         self,
