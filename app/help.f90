@@ -1,6 +1,6 @@
 !> Screens of help about commands and about words of input and output
 module vcor_app_help
-   use vcor_app_commands, only : command_names, commands, entry_t, missing_package, &
+   use vcor_app_commands, only : command_names, commands, part_t, missing_package, &
       package_commands, page_of, texts_of
    use vcor_app_external, only : external_commands
    use vcor_app_screen, only : screen_items
@@ -8,8 +8,8 @@ module vcor_app_help
    use vcor_case_choices, only : choices, topics
    use vcor_error, only : code_names, error_t, error_usage, raise
    use vcor_words, only : contains_word, nearest_name, suggestion
-   use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
-      statuses
+   use vcor_sweep_quantity, only : bounce_quantities, history_quantities, quantities, &
+      quantity_names, quantity_t, statuses
    use vcor_text, only : integer_text, printable
    use vcor_version, only : version
    implicit none
@@ -125,7 +125,7 @@ contains
 
    !> Page of a command
    function command_page(page) result(text)
-      type(entry_t), intent(in) :: page(:)
+      type(part_t), intent(in) :: page(:)
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: words, before, kind
@@ -199,6 +199,8 @@ contains
       end do
       heading = "Columns of STEM.csv, the time history:"
       call show_columns("", history_quantities)
+      heading = "Columns of STEM_bounces.csv, the bounces:"
+      call show_columns("", bounce_quantities)
       heading = "In this program:"
       do i = 1, size(topics)
          call show("", item("   "//word_of(topics(i)%words), topics(i)%meaning), topics(i)%words)

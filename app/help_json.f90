@@ -1,6 +1,6 @@
 !> All help as one JSON document, `vcor help --json`, from which scripts/manual.py makes the manual
 module vcor_app_help_json
-   use vcor_app_commands, only : command_names, entry_t, options_of, package_commands, page_of, &
+   use vcor_app_commands, only : command_names, part_t, options_of, package_commands, page_of, &
       texts_of
    use vcor_app_screen, only : screen_items
    use vcor_case_described, only : described_groups
@@ -8,7 +8,8 @@ module vcor_app_help_json
    use vcor_json, only : array, member, object, strings, words
    use vcor_solver_features, only : features, methods, of_paper_scheme, reads, refusals, &
       solves, unread
-   use vcor_sweep_quantity, only : history_quantities, quantities, quantity_t, statuses
+   use vcor_sweep_quantity, only : bounce_quantities, history_quantities, quantities, &
+      quantity_t, statuses
    use vcor_text, only : integer_text
    use vcor_version, only : version
    use vcor_words, only : contains_word, list_of_words, longest_name
@@ -39,7 +40,8 @@ contains
       end do
       text = text//array(list, "package_commands")
       text = text//array(described_groups(), "groups")//array(columns(quantities()), "summary") &
-         //array(columns(history_quantities), "history")
+         //array(columns(history_quantities), "history") &
+         //array(columns(bounce_quantities), "bounces")
       list = ""
       do i = 1, size(statuses)
          list = list//object(member("name", statuses(i)%name) &
@@ -125,7 +127,7 @@ contains
       character(len=*), intent(in) :: command
       character(len=:), allocatable :: text
 
-      type(entry_t), allocatable :: page(:)
+      type(part_t), allocatable :: page(:)
       character(len=:), allocatable :: entries, name
       integer :: i, mark
 

@@ -58,7 +58,8 @@ module vcor_app_screen
 contains
 
    !> Report of one impact
-   function report(filename, title, method, outcome, exact, exact_name, time, files) result(text)
+   function report(filename, title, method, outcome, exact, exact_name, time, bounces, files) &
+      result(text)
       character(len=*), intent(in) :: filename
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: method
@@ -69,6 +70,8 @@ contains
       character(len=*), intent(in) :: exact_name
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
+      !> Table of bounces; may be empty
+      character(len=*), intent(in) :: bounces
       !> Notes and written files, one per line
       character(len=*), intent(in) :: files
       character(len=:), allocatable :: text
@@ -79,14 +82,14 @@ contains
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are still in contact at '//short(time)//' s (method ' &
             //method//' in '//steps_of(method, outcome)//'), status ' &
-            //trim(status_name(outcome%status))//nl
+            //trim(status_name(outcome%status))//nl//bounces
       else
          text = text//answer(outcome, exact, exact_name)//nl
          do i = 1, size(blocks)
             if (blocks(i)%title == 'what decides the loss') text = text//budget(outcome)//nl
             text = text//block_text(blocks(i), outcome, exact, exact_name)//nl
          end do
-         text = text//'  method '//method//' in '//steps_of(method, outcome)//nl
+         text = text//bounces//'  method '//method//' in '//steps_of(method, outcome)//nl
       end if
       text = text//files//nl
    end function report

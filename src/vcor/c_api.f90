@@ -18,7 +18,8 @@ module vcor_c_api
    use vcor_case_problem, only : problem_t
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_history, only : history
-   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_bounces, only : bounces_t
+   use vcor_impact_outcome, only : bounces_of, outcome_t
    use vcor_impact_trajectory, only : history_steps
    use vcor_impact_validity, only : surroundings_t
    use vcor_io_posix, only : fortran => fortran_text
@@ -26,8 +27,8 @@ module vcor_c_api
    use vcor_solver, only : settle
    use vcor_sweep_points, only : default_threads, failures_t, most_threads, solve_point, &
       solve_points, sweep_t, worker_t
-   use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
-      quantity_names, quantity_place, quantity_t, summary_t
+   use vcor_sweep_quantity, only : bounce_quantities, bounce_values, history_quantities, &
+      new_summary, point_invalid, quantities, quantity_names, quantity_place, quantity_t, summary_t
    use vcor_text, only : integer_text, shortened
    use vcor_verify_agreement, only : compared_names
    use vcor_version, only : version
@@ -36,10 +37,11 @@ module vcor_c_api
    private
 
    public :: vcor_library_version, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
-      vcor_warnings, vcor_history
+      vcor_warnings, vcor_history, vcor_bounces
 
    !> Tables for `vcor_column_of`
-   integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
+   integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2, &
+      bounce_columns = 3
    integer :: k
    !> The version as a C string
    character(kind=c_char), target :: version_text(len(version) + 1) = &
@@ -80,6 +82,8 @@ contains
          allocate (list, source=quantities())
       case (history_columns)
          allocate (list, source=history_quantities)
+      case (bounce_columns)
+         allocate (list, source=bounce_quantities)
       case (compared_columns)
          allocate (list, source=quantities())
          list = list([(quantity_place(trim(compared_names(i))), i=1, size(compared_names))])
@@ -388,13 +392,13 @@ contains
       if (allocated(error)) return
       if (size(values, 2) <= 1) handle%looked_at = places
       call implausible_numbers(sweep%case, sweep%grid, found)
-      if (.not. allocated(handle%told)) allocate (handle%told(0))
+      if (.not. allocated(handle%reported)) allocate (handle%reported(0))
       do i = 1, size(found)
          ! what is wrong with a value, wherever it stands
          flaw = found(i)
          flaw = flaw(index(trim(flaw(:index(flaw, ' = ') - 1)), ' ', back=.true.) + 1:)
-         if (any(handle%told == flaw)) cycle
-         handle%told = [handle%told, flaw]
+         if (any(handle%reported == flaw)) cycle
+         handle%reported = [handle%reported, flaw]
          notes = [notes, found(i)]
       end do
    end subroutine look
@@ -427,13 +431,58 @@ contains
       type(c_ptr), value :: rows, values, error
       integer(c_int) :: code
 
-      type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
-      type(sweep_t) :: sweep
       type(worker_t) :: worker
       type(outcome_t) :: outcome
-      type(address_t) :: none(0)
       real(wp), allocatable :: state(:, :)
+
+      call solve_alone(self, rows, values, worker, outcome, trouble)
+      if (.not. allocated(trouble)) then
+         call history(worker%problem%impact, worker%trajectory, history_steps, state)
+         call put_rows(state, rows, values, trouble)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_history
+
+   !> Compute the bounces of a single impact
+   function vcor_bounces(self, rows, values, error) bind(c) result(code)
+      type(c_ptr), value :: self
+      type(c_ptr), value :: rows, values, error
+      integer(c_int) :: code
+
+      type(error_t), allocatable :: trouble
+      type(worker_t) :: worker
+      type(outcome_t) :: outcome
+      type(bounces_t) :: bounces
+      real(wp), allocatable :: table(:, :)
+      integer :: i
+
+      call solve_alone(self, rows, values, worker, outcome, trouble)
+      if (.not. allocated(trouble)) then
+         bounces = bounces_of(worker%problem%impact, worker%trajectory, outcome)
+         allocate (table(size(bounce_quantities), bounces%count))
+         do i = 1, bounces%count
+            table(:, i) = bounce_values(i, bounces%list(i))
+         end do
+         call put_rows(table, rows, values, trouble)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_bounces
+
+   !> Solve a single impact of which rows are to be handed over
+   subroutine solve_alone(self, rows, values, worker, outcome, trouble)
+      !> `vcor_case`
+      type(c_ptr), intent(in) :: self
+      !> Number of rows and the rows, set to none
+      type(c_ptr), intent(in) :: rows, values
+      type(worker_t), intent(out) :: worker
+      type(outcome_t), intent(out) :: outcome
+      !> What is wrong; unallocated on success
+      type(error_t), allocatable, intent(out) :: trouble
+
+      type(handle_t), pointer :: handle
+      type(sweep_t) :: sweep
+      type(address_t) :: none(0)
       real(wp) :: nothing(0, 1)
 
       call put_count(rows, 0)
@@ -445,19 +494,24 @@ contains
       if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
       if (.not. allocated(trouble)) sweep = handle%sweep
 !$omp end critical (vcor_c_api)
-      if (.not. allocated(trouble)) then
-         call solve_point(sweep, 1, worker, outcome, trouble)
-         if (allocated(trouble)) then
+      if (allocated(trouble)) return
+      call solve_point(sweep, 1, worker, outcome, trouble)
+      if (.not. allocated(trouble)) return
 !$omp critical (vcor_c_api)
-            trouble%message = handle%case%source//': '//trouble%message
+      trouble%message = handle%case%source//': '//trouble%message
 !$omp end critical (vcor_c_api)
-         else
-            call history(worker%problem%impact, worker%trajectory, history_steps, state)
-            call put_copy(values, c_numbers(reshape(state, [size(state)])), trouble)
-            if (.not. allocated(trouble)) call put_count(rows, size(state, 2))
-         end if
-      end if
-      code = report_error(trouble, error)
-   end function vcor_history
+   end subroutine solve_alone
+
+   !> Hand over rows
+   subroutine put_rows(table, rows, values, trouble)
+      !> The rows, shape (columns, rows)
+      real(wp), intent(in) :: table(:, :)
+      type(c_ptr), intent(in) :: rows, values
+      !> What is wrong; unallocated on success
+      type(error_t), allocatable, intent(out) :: trouble
+
+      call put_copy(values, c_numbers(reshape(table, [size(table)])), trouble)
+      if (.not. allocated(trouble)) call put_count(rows, size(table, 2))
+   end subroutine put_rows
 
 end module vcor_c_api

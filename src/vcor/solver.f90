@@ -72,6 +72,9 @@ contains
       if (method == coupled .and. .not. impact%face%is_built()) then
          call raise(error, error_input, "method = 'coupled' needs the face of the impact: " &
             //'new_face builds it', 'method')
+      else if (settings%bounces > 1 .and. .not. impact%gravity > 0.0_wp) then
+         call raise(error, error_input, 'the sphere comes back under its weight only: expected ' &
+            //'gravity > 0, or bounces = 1', 'bounces gravity')
       else
          call refuse_features(has, error)
       end if
@@ -187,6 +190,7 @@ contains
          first = settings
          first%second_coefficient = 0.0_wp
          first%ghost = .false.
+         first%bounces = 1
          call new_ive(auto%ive, first, error)
          if (allocated(error)) return
          auto%settings = settings

@@ -43,7 +43,7 @@ EXAMPLES = {
     ],
 }
 #: Files that an example adds: where they go, and where they are
-ADDED = {"a method": {"src/vcor/solver/verlet.f90": ROOT / "tests" / "package" / "verlet.f90"}}
+ADDED = {"a method": {"src/vcor/solver/my_method.f90": ROOT / "tests" / "package" / "my_method.f90"}}
 
 
 def text_of(title: str) -> str:

@@ -34,7 +34,7 @@ COMPILED = {
     "a column of the summary": ["src/vcor/sweep/quantity.f90"],
     "a key of the input": [CATALOGUE, INPUTS, READER],
     "a shape of the striking body": [SHAPE, CATALOGUE],
-    "a method": [FEATURES, "src/vcor/solver/type.f90", "src/vcor/solver/verlet.f90", FACTORY],
+    "a method": [FEATURES, "src/vcor/solver/type.f90", "src/vcor/solver/my_method.f90", FACTORY],
 }
 
 

@@ -123,7 +123,7 @@ def _page(self: Case, *, port: int | None = None) -> "Live":
 
 Case.page = _page
 
-#: What needs scipy or reads files, by its module; imported when it is used
+#: Names that need scipy or read files, by their modules; imported when they are used
 _LATER = {
     "Fit": "materials.fit",
     "bands": "uncertainty_sweep",

@@ -1,4 +1,4 @@
-"""What the commands share: options, and errors of one line."""
+"""Common parts of the commands: options, and errors of one line."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Parser(argparse.ArgumentParser):
 
     #: Option whose value may begin with a dash, as -5C
     signed = ""
-    #: What to say of choices that another command has
+    #: Words about choices that another command has
     elsewhere: Mapping[str, str] = {}
 
     def __init__(self, name: str, **options: Any) -> None:

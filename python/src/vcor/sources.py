@@ -1,4 +1,4 @@
-"""What figures are made from: files of results, materials, and sweeps in memory."""
+"""Sources of figures: files of results, materials, and sweeps in memory."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Result:
         self.summary = _in_celsius(self.summary) if celsius else self.summary
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
-        #: What stands for it in a legend
+        #: Its label in a legend
         self.text = ""
         self.title = printable(str(self.summary.attrs.get("title", "")))
 

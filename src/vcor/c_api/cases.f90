@@ -91,7 +91,7 @@ contains
          other%case = handle%case
          other%place = handle%place
          if (allocated(handle%tuned)) other%tuned = handle%tuned
-         if (allocated(handle%told)) other%told = handle%told
+         if (allocated(handle%reported)) other%reported = handle%reported
          if (allocated(handle%solver)) allocate (other%solver, source=handle%solver)
          call put_pointer(copy, c_loc(other))
 !$omp end critical (vcor_c_api)

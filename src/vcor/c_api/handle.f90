@@ -56,7 +56,7 @@ module vcor_c_api_handle
       !> none
       type(address_t), allocatable :: looked_at(:)
       !> Notes on implausible numbers that were handed over, without the place of the number
-      character(len=note_length), allocatable :: told(:)
+      character(len=note_length), allocatable :: reported(:)
       !> Single impacts about which `vcor_beyond_data` was asked last; unallocated: none
       type(examined_t), allocatable :: examined
       !> What is common to its impacts
@@ -263,7 +263,7 @@ contains
          ! a value or a list in the case has no effect on points that bring their own
          address = places(i)
          address%element = 0
-         call case%oust(address, always=.true.)
+         call case%drop_alternative(address, always=.true.)
          entry = case%entry(address)
          if (allocated(entry%origin)) then
             deallocate (entry%origin)

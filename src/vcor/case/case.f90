@@ -19,8 +19,8 @@ module vcor_case_case
       procedure :: start => start_case
       procedure :: remove => remove_item
       procedure :: set_entry => set_and_choose
-      procedure :: withdraw, oust, is_materials, find_material, material_of, has_thickness
-      procedure :: has_second_sphere
+      procedure :: withdraw, drop_alternative, is_materials, find_material, material_of
+      procedure :: has_thickness, has_second_sphere
    end type case_t
 
 contains
@@ -69,7 +69,7 @@ contains
    end subroutine withdraw
 
    !> Reset the key that excludes a given one, as drop_height does velocity, and vice versa
-   pure subroutine oust(self, address, always)
+   pure subroutine drop_alternative(self, address, always)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
       !> Whether to reset it also if it was set, instead of read from the case file
@@ -87,7 +87,7 @@ contains
          entry = self%entry(other)
          if (entry%given .and. (always .or. .not. allocated(entry%origin))) call self%unset(other)
       end do
-   end subroutine oust
+   end subroutine drop_alternative
 
    !> Name the files of results after the case file
    pure subroutine choose_stem(self)

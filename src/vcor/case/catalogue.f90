@@ -86,6 +86,7 @@ module vcor_case_catalogue
       upper=coarsest_accuracy)
    type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
    type(interval_t), parameter :: of_a_grid = interval_t(lower=1.0_wp, upper=real(most_points, wp))
+   type(interval_t), parameter :: of_bounces = interval_t(lower=1.0_wp, upper=1000.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
    !> Of damping ratios: a mode that does not oscillate has none
    type(interval_t), parameter :: of_damping = interval_t(0.0_wp, 1.0_wp, upper_open=.true.)
@@ -121,6 +122,8 @@ module vcor_case_catalogue
       key_t("impact", "gravity", real_key, &
          "Gravity g along the impact, 0 on a pendulum; default: none; drop_height falls with " &
          //"9.80665", "m/s2", not_negative), &
+      key_t("impact", "bounces", integer_key, "Bounces under the weight to follow, at most; " &
+         //"direct only", range=of_bounces, default="1"), &
       !
       key_t("sphere", "shape", text_key, "Shape of the body", &
          choices=sphere_shapes//" "//other_shapes, default="sphere"), &

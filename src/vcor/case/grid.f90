@@ -100,7 +100,7 @@ contains
       places = self%places(point)
       other = case
       do i = 1, size(places)
-         call other%oust(self%axes(i)%address, always=.true.)
+         call other%drop_alternative(self%axes(i)%address, always=.true.)
          call other%set(self%axes(i)%address, self%axes(i)%values(places(i)))
       end do
    end function case_at

@@ -19,7 +19,7 @@ module vcor_case_inputs
    implicit none
    private
 
-   public :: inputs_t, target_inputs_t, quantity_t, is_same
+   public :: inputs_t, target_inputs_t, input_key_t, is_same
    public :: waves_body, of_sphere, of_plate, of_target, positive_or_zero
    public :: target_none, target_plate, target_beam, target_rod, target_block, target_modes
 
@@ -104,7 +104,7 @@ module vcor_case_inputs
    end type inputs_t
 
    !> A number of the inputs that varies: the key and the bodies that it belongs to
-   type :: quantity_t
+   type :: input_key_t
       !> Its key
       character(len=26) :: key = ''
       !> Whether it is of the material of the sphere, of the plate, and of the structure
@@ -113,7 +113,7 @@ module vcor_case_inputs
       logical :: of_structure = .false.
       !> Index of the number in a list; 0: no list
       integer :: element = 0
-   end type quantity_t
+   end type input_key_t
 
    !> Whether two sets of inputs, or settings, are the same
    interface is_same
@@ -126,7 +126,7 @@ contains
    !> Set a number
    pure subroutine put(self, quantity, value)
       class(inputs_t), intent(inout) :: self
-      type(quantity_t), intent(in) :: quantity
+      type(input_key_t), intent(in) :: quantity
       !> In the unit of the key; NaN: not given
       real(wp), intent(in) :: value
 
@@ -182,7 +182,7 @@ contains
    !> Set a number of the structure
    pure subroutine put_target(self, quantity, value)
       class(target_inputs_t), intent(inout) :: self
-      type(quantity_t), intent(in) :: quantity
+      type(input_key_t), intent(in) :: quantity
       !> In the unit of the key
       real(wp), intent(in) :: value
 
@@ -217,7 +217,7 @@ contains
       type(inputs_t), intent(inout) :: self
       !> of_sphere, of_plate or of_target
       integer, intent(in) :: body
-      type(quantity_t), intent(in) :: quantity
+      type(input_key_t), intent(in) :: quantity
       real(wp), intent(in) :: value
 
       real(wp), allocatable :: list(:)
@@ -300,7 +300,7 @@ contains
          [b%time_step, b%end_time, b%accuracy, b%second_coefficient])) &
          .and. a%method == b%method .and. a%scheme == b%scheme .and. a%form == b%form &
          .and. a%quadrature == b%quadrature .and. (a%ghost .eqv. b%ghost) &
-         .and. (a%first_contact .eqv. b%first_contact)
+         .and. (a%first_contact .eqv. b%first_contact) .and. a%bounces == b%bounces
    end function same_settings
 
    !> A positive number; 0 if there is none

@@ -10,8 +10,8 @@ module vcor_case_reader
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group
    use vcor_case_entries, only : address_t
-   use vcor_case_inputs, only : inputs_t, of_plate, of_sphere, of_target, quantity_t, target_beam, &
-      target_block, target_modes, target_none, target_plate, target_rod, waves_body
+   use vcor_case_inputs, only : input_key_t, inputs_t, of_plate, of_sphere, of_target, &
+      target_beam, target_block, target_modes, target_none, target_plate, target_rod, waves_body
    use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_t, raise
@@ -284,6 +284,8 @@ contains
          settings%quadrature = text
          has = features_of_case(case)
          settings%ghost = has(of_ghost)
+         call case%get('impact', 'bounces', settings%bounces)
+         call reading%mark(case%address('impact', 'bounces'))
       end associate
       ! they count whether the method reads them or not: it refuses what it cannot take
       call put(case, inputs, 'impact', 'gravity')
@@ -326,7 +328,7 @@ contains
       !> Body of the material; absent: not of a material
       integer, intent(in), optional :: body
 
-      type(quantity_t) :: quantity
+      type(input_key_t) :: quantity
       real(wp) :: number
       integer :: item
 
@@ -346,7 +348,7 @@ contains
       type(address_t), intent(in) :: address
       !> The inputs of its case
       type(inputs_t), intent(in) :: inputs
-      type(quantity_t) :: quantity
+      type(input_key_t) :: quantity
 
       quantity%key = catalogue(address%row)%name
       quantity%element = address%element

@@ -20,7 +20,7 @@ module vcor_impact_creep
    implicit none
    private
 
-   public :: split_modes
+   public :: split_modes, in_order, spectrum_t
 
    !> Error of the interpolation
    real(wp), parameter :: of_interpolation = 1.0e-13_wp

@@ -242,7 +242,7 @@ contains
       end if
       ! the check refuses two options for one quantity; of two calls by a program the last one
       ! counts
-      call case%oust(address, always=.not. present(option))
+      call case%drop_alternative(address, always=.not. present(option))
       call case%set(address, entry)
    end subroutine override
 

@@ -22,7 +22,7 @@ module vcor_solver_features
    public :: unread_t, unread, why_unread, own_rule_t, own_rules, refusal_t, refusals, reads
    public :: ive, direct, paper, coupled, of_body, of_thin_plate, of_hereditary_plate, &
       of_frozen_plate, of_layer, of_viscosity, of_boltzmann, of_receding, of_eq1, of_gravity, &
-      of_second_term, of_ghost, of_paper_scheme, of_structure
+      of_second_term, of_ghost, of_paper_scheme, of_structure, of_relaxing_plate, of_bounces
 
    !> A method
    type :: method_t
@@ -61,7 +61,7 @@ module vcor_solver_features
       of_frozen_plate = of_body + 4, of_layer = of_body + 5, of_boltzmann = of_body + 6, &
       of_receding = of_body + 7, of_eq1 = of_body + 8, of_viscosity = of_body + 9, &
       of_gravity = of_body + 10, of_second_term = of_body + 11, of_ghost = of_body + 12, &
-      of_structure = of_body + 13
+      of_structure = of_body + 13, of_relaxing_plate = of_body + 14, of_bounces = of_body + 15
 
    !> A feature of an impact, or of the way in which it is to be solved
    type :: feature_t
@@ -88,7 +88,9 @@ module vcor_solver_features
       feature_t('a weight', 'gravity'), &
       feature_t('the second term of the Volterra series', 'volterra_order = 2'), &
       feature_t('motion after the separation', 'continue_after_separation'), &
-      feature_t('a struck structure', '&target')]
+      feature_t('a struck structure', '&target'), &
+      feature_t('waves in a thin plate whose modulus relaxes', "waves = 'relaxing'"), &
+      feature_t('several bounces', 'bounces')]
 
    !> A feature that methods, or other features, exclude
    type :: refusal_t
@@ -125,6 +127,16 @@ module vcor_solver_features
       'continue_after_separation method waves'), &
       refusal_t([ive, 0, 0], of_paper_scheme, &
       "adams_bashforth is a scheme of method = 'direct'", 'scheme method'), &
+      refusal_t([of_body, 0, 0], of_bounces, "with waves = 'body' no dent is kept between two " &
+      //'bounces: expected bounces = 1, or other waves', 'bounces waves'), &
+      refusal_t([of_hereditary_plate, of_frozen_plate, of_relaxing_plate], of_bounces, &
+      "a plate that has a memory is not followed from bounce to bounce: expected waves = 'none' " &
+      //"or 'constant', or bounces = 1", 'bounces waves'), &
+      refusal_t([of_second_term, of_ghost, 0], of_bounces, "bounces are followed for one term of " &
+      //'the Volterra series, and with the separation: expected bounces = 1', &
+      'bounces volterra_order continue_after_separation'), &
+      refusal_t([ive, paper, coupled], of_bounces, 'bounces after the first one are followed by ' &
+      //"method = 'direct' with scheme = 'product'", 'bounces method scheme'), &
       refusal_t([ive, 0, 0], of_second_term, &
       "the second term of the Volterra series is solved by method = 'direct' only", &
       'volterra_order volterra_coefficient method'), &

@@ -230,6 +230,7 @@ contains
          inputs%settings%method = 'auto'
          inputs%settings%scheme = 'product'
          inputs%settings%ghost = .false.
+         inputs%settings%bounces = 1
          if (model%is_half_space) inputs%half_thickness = 0.0_wp
          inputs%target%share = model%share
          if (model%is_infinite) call remove_ends(inputs, error)

@@ -53,7 +53,7 @@ class Card:
     density: float | None = None
     #: Keys of &material that shift the times with temperature
     shift: Shift = dataclasses.field(default_factory=dict)
-    #: What is left out or changed
+    #: Remarks on what is left out or changed
     remarks: tuple[str, ...] = ()
     units: str = "SI"
 
@@ -128,7 +128,7 @@ class Card:
         return "\n".join([*(form.comment + row for row in head), *form.write(card)]) + "\n"
 
     def notes(self, code: str) -> list[str]:
-        """What is to be known of the card of a program."""
+        """Notes on the card of a program."""
         form, notes, nu = FORMATS[code], list(self.remarks), self.poisson_ratio
         if nu == 0.5 and form.incompressible:
             notes.append(f"Poisson's ratio 0.5 needs {form.incompressible}")

@@ -272,7 +272,7 @@ def _check(made: Card, source: Source) -> None:
         source.fail(0, f"the card makes a group that vcor refuses: {why}")
 
 
-#: What a file of each program has
+#: Line by which a file of each program is recognised
 _MARKS = (
     ("lsdyna", r"(?im)^\*MAT_"),
     ("abaqus", r"(?im)^\*(MATERIAL|ELASTIC|VISCOELASTIC)\b"),

@@ -137,7 +137,7 @@ class Twin:
 
     @property
     def entered(self) -> float:
-        """What a program takes for e to come to this C; without clipping, e itself."""
+        """Restitution to give to a program so that it has this C; without clipping, e itself."""
         share = self.damping / math.sqrt(self.mass * self.stiffness) / self.law.critical
         return math.exp(-math.pi * share / math.sqrt(1 - share**2)) if share < 1 else math.nan
 

@@ -49,7 +49,7 @@ from .targets import TARGETS, TEMPLATES, Target
 ROUNDING = 1e-3
 #: Most bodies, so that a matrix can be read
 MOST = 40
-#: What all pairs must have in common, and what counts where it is not given
+#: Keys that all pairs must have in common, and their values where they are not given
 COMMON = {"impact.temperature": None, "impact.gravity": 0.0, "contact.law": None}
 #: Compliance of a body that a fit makes rigid, relative to that of a contact
 RIGID = 1e-3
@@ -288,7 +288,7 @@ def _header(
     curves: Mapping[tuple[int, int], xr.Dataset],
     masses: Sequence[float],
 ) -> list[str]:
-    """What the numbers are for."""
+    """Validity and conditions of the numbers, as lines of a head."""
     case, curve = next(iter(table.values())), next(iter(curves.values()))
     temperature, gravity = case["impact.temperature"], case["impact.gravity"]
     v = curve.velocity.values

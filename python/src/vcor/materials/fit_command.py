@@ -157,7 +157,7 @@ def _parts(source: str) -> tuple[str, str]:
 
 
 def report(fit: Fit, source: str, note: str, tail: Sequence[str]) -> str:
-    """What the command prints before the group."""
+    """Report that the command prints before the group."""
     samples = fit.samples
     lines = [f"vcor {__version__}  {source}", note, "", f"  {_title(fit)}"]
     lines.append(f"    {'parameter':24s}{'value':>16s} {'unit':8s}+- standard error")

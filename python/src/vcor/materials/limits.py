@@ -233,7 +233,7 @@ class _Profile:
         return found_at, math.sqrt(max(found - fit.chi2, 0.0))
 
     def end(self, at: Floats, rise: float, inside: float) -> _End:
-        """What the end is if it is at a point: set by data, a range, or open.
+        """Kind of the end if it is at a point: set by data, a range, or open.
 
         The data set no end where there is no result, nor where another parameter that may have
         followed this one has come to the end of its range, or so far that it is not followed.

@@ -53,13 +53,13 @@ class Master:
     log_error: Floats
     laws: tuple[Law, ...]
     curves: tuple[Curve, ...]
-    #: What was found at pairs of temperatures whose step is that of the law
+    #: Remarks on pairs of temperatures whose step is that of the law
     flat: tuple[str, ...] = ()
     #: Whether the moduli are also proportional to the temperature
     vertical: bool = False
     #: Where storage and loss moduli give different shifts, in words
     apart: tuple[str, ...] = ()
-    #: What was taken of each file
+    #: Remarks on the columns taken of each file
     taken: tuple[str, ...] = ()
 
     def curve(self) -> tuple[Floats, ...]:

@@ -53,7 +53,7 @@ PULSE, LEAST_PULSE, APART = 0.3, 0.1, 20.0
 #: Part of the largest force of a pulse at which its contact begins and ends, and lengths of a
 #: contact that are kept on each side of one of several
 TOUCH, BESIDE_PULSE = 0.01, 2.0
-#: What the name of a record has behind that of its file, if it is one of several
+#: End of the name of a record, behind that of its file, if it is one of several
 IMPACT = " (impact "
 #: Most impacts of a table: a fit solves each some 500 times, which takes 0.03 s an impact on a thin
 #: plate, so a minute
@@ -323,7 +323,7 @@ class Record:
         return model + self.baseline
 
     def said(self) -> str:
-        """What was taken, and how: the baseline of the parameters that were tried last."""
+        """Remark on the record: how it was taken, and its baseline by the parameters tried last."""
         turned = ", inverted" * self.turned
         return (
             f"{self.taken or self.source}; force above a baseline of {self.baseline:.4g} N{turned}"

@@ -755,7 +755,7 @@ class Reader:
         )
 
     def _incomplete(self, table: Table, kind: str) -> InputError:
-        """What a table lacks, and which column it could be."""
+        """Error of a table that lacks a column, with the name of one that it could be."""
         place = f"{self.path}:{table.line}"
         flawed = [head for head in table.heads if head.flaw]
         free = [

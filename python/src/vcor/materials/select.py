@@ -36,7 +36,7 @@ class Condition:
     seen: bool = False
     #: Whether a row was taken
     met: bool = False
-    #: What the column has, in the order of the file
+    #: Values of the column, in the order of the file
     found: dict[str, None] = field(default_factory=dict)
 
     def __str__(self) -> str:

@@ -60,7 +60,7 @@ _SLIDERS = (
 _MORE = {"Ball": ["sphere"], "Surface": ["plate"], "Impact": ["impact"], "Mechanics": ["contact"]}
 #: Groups that a page has no widgets for: it writes no files and has a range of its own
 _NOT_SHOWN = ("sweep", "output")
-#: What a value is at first where a key needs one, in SI units as a namelist has it
+#: First value where a key needs one, in SI units as a namelist has it
 _AT_FIRST = {
     "thickness": "0.01", "surface_radius": "0.01", "base": "'bonded'", "body": "'block'",
     "mass": "1.0", "length": "0.3", "width": "0.03", "diameter": "0.02", "support": "'supported'",
@@ -72,7 +72,7 @@ _AT_FIRST = {
 }  # fmt: skip
 #: Places of a slider on each side of its middle
 _PLACES = 40
-#: What the library says of a value without effect, and an address in its lines
+#: Words of the library about a value without effect, and an address in its lines
 _UNREAD = "the impact does not read it"
 _ADDRESS = r"\b\w+\.\w+\b"
 _DIGITS = 3
@@ -350,7 +350,7 @@ class Form:
         self._changed()
 
     def _follow(self, address: str, key: Key) -> None:
-        """What else a change brings: other keys, and waves that suit the surface."""
+        """Follow a change: other keys, and waves that suit the surface."""
         owner = address.rpartition(".")[0]
         group = groups()[key.group]
         if key.name == group.selector:

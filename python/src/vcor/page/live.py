@@ -56,7 +56,7 @@ from .worker import Worker
 MOST_BYTES = 4_000_000
 #: Digits of e in large; all digits stand in the table of numbers
 _DIGITS = 4
-#: What the curve may be drawn against, in this order, before all other numbers
+#: Numbers that the curve may be drawn against, in this order, before all others
 _AXES = ("impact.drop_height", "impact.velocity", "impact.temperature", "sphere.diameter",
          "sphere.radius", "plate.thickness")  # fmt: skip
 _BODIES = {"plate": "surface", "sphere": "ball"}
@@ -64,7 +64,7 @@ _log = logging.getLogger(__name__)
 
 
 class Page:
-    """What one browser tab shows.
+    """Content of one browser tab.
 
     Parameters
     ----------
@@ -363,7 +363,7 @@ class Page:
         self._changed()
 
     def _labels(self) -> list[str]:
-        """What distinguishes the present case and each kept one."""
+        """Labels of the present case and each kept one: the values that differ."""
         cases = [self.case, *[one for one, _ in self._kept]]
         addresses: dict[str, None] = {}
         for one in cases[1:]:

@@ -1,4 +1,4 @@
-"""What a user takes from a live page: the case, a table, figures, and the lines that make them."""
+"""Files of a live page: the case, a table, figures; and the commands that make the same."""
 
 from __future__ import annotations
 

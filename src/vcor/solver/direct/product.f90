@@ -99,7 +99,7 @@ contains
       integer :: level, room
       logical :: crude
 
-      if (impact%target%structure%exists()) then
+      if (impact%target%structure%exists() .or. self%settings%bounces > 1) then
          call solve_contacts(self%settings, impact, trajectory, error)
          return
       end if

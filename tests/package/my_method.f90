@@ -4,7 +4,7 @@
 !> m s'' = -F, where F(t_n) = sum over all steps of the integral of k(t_n - x) u'(x) dx with u' as
 !> its mean in the step: a product integration whose force needs the newest s only, which the
 !> velocity in the middle of the step gives.
-module vcor_solver_verlet
+module vcor_solver_my_method
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_sphere, &
@@ -78,4 +78,4 @@ contains
          //'elastic sphere')
    end subroutine solve
 
-end module vcor_solver_verlet
+end module vcor_solver_my_method
