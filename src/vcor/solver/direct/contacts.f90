@@ -394,7 +394,7 @@ contains
       integer :: iteration
 
       self%steps = self%steps + 1
-      call self%modes%advance([self%force(1), self%force(2)])
+      call self%modes%advance(self%force(2))
       call self%row%find_levels()
       associate (dt => self%dt, f => self%force)
          ! a sum of equal steps would be off by the same rounding in each of them
@@ -425,7 +425,8 @@ contains
          self%s = s
          f = [force, f(1), f(2)]
          if (.not. force > 0.0_wp) f(2:) = 0.0_wp
-         velocity = self%modes%rate()
+         velocity = 0.0_wp
+         if (force > 0.0_wp) velocity = self%modes%rate()
          self%power(:, 2:3) = self%power(:, 1:2)
          self%power(:, 1) = force*[self%sphere_velocity(impact) - velocity, velocity]
          if (any(abs(self%power(2, :)) > 0.0_wp)) self%work = self%work &
@@ -655,7 +656,7 @@ contains
 
       dt = impact%law%contact_time/real(direct_first_steps, wp)*impact%time_scale()
       call run%begin(impact, terms, vibration, dt)
-      call run%modes%set(modes)
+      call run%modes%set(modes, 0.0_wp)
       call run%row%set(w, 0.0_wp, lag)
       run%force = 0.0_wp
       run%start = node(col_time)

@@ -245,7 +245,7 @@ contains
             now%alpha = impact%target%alpha(0.0_wp)
             now%force = impact%first_force()
             if (allocated(sums%vibration)) then
-               now%modes = sums%vibration%rest()
+               now%modes = sums%vibration%at_rest()
                ! a flexibility takes up the velocity at first
                if (sums%vibration%residual > 0.0_wp) now%force = 0.0_wp
             end if
