@@ -20,8 +20,8 @@ module vcor_app_files
    !> Length of the longest ending
    integer, parameter :: longest_ending = 24
    !> Endings of the file names of run
-   character(len=*), parameter :: run_endings(3) = [character(len=longest_ending) :: &
-      '_summary.csv', '.csv', '.h5']
+   character(len=*), parameter :: run_endings(4) = [character(len=longest_ending) :: &
+      '_summary.csv', '_bounces.csv', '.csv', '.h5']
    !> Endings of the file names of material
    character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
       '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
@@ -36,8 +36,9 @@ module vcor_app_files
       logical, allocatable :: writes(:)
       !> Path of the file of an unfinished sweep; empty if there is none
       character(len=:), allocatable :: part
-      !> Whether a time history is written
+      !> Whether a time history is written, and a table of bounces
       logical :: history = .true.
+      logical :: bounces = .false.
    contains
       procedure :: name, written, directory
    end type files_t
@@ -81,6 +82,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: directory, stem
+      integer :: count
       logical :: csv, hdf5
 
       call case%get('output', 'directory', directory)
@@ -93,14 +95,17 @@ contains
       call case%get('output', 'csv', csv)
       call case%get('output', 'hdf5', hdf5)
       call case%get('output', 'history', files%history)
-      ! only a single impact has a time history
+      call case%get('impact', 'bounces', count)
+      ! only a single impact has a time history and a table of bounces
       files%history = files%history .and. size(grid%axes) == 0
+      files%bounces = count > 1 .and. size(grid%axes) == 0
       if (request%command == 'material') then
          files%endings = material_endings
          files%writes = [csv, csv, csv, hdf5]
       else
-         files%endings = run_endings
-         files%writes = [csv, csv .and. files%history, hdf5]
+         files%endings = pack(run_endings, [.true., files%bounces, .true., .true.])
+         files%writes = pack([csv, csv, csv .and. files%history, hdf5], &
+            [.true., files%bounces, .true., .true.])
       end if
       ! plain numbers are for scripts, which do not expect files
       if (size(request%names) > 0 .and. .not. allocated(request%directory)) files%writes = .false.

@@ -6,14 +6,15 @@ program vcor_main
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
    use vcor_app_external, only : run_external
-   use vcor_app_help, only : help_json, help_text
+   use vcor_app_help, only : help_text
+   use vcor_app_help_json, only : help_json
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
    use vcor_app_run, only : run_impact
    use vcor_rounded, only : short
    use vcor_app_sweep, only : run_sweep
-   use vcor_app_validity, only : warn_of_input
    use vcor_app_verify, only : verify_case, verify_program
+   use vcor_app_warnings, only : warn_of_input
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, error_usage, raise
    use vcor_io_file, only : write_stdout

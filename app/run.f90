@@ -1,14 +1,16 @@
 !> The command run for a single impact; sweeps are in `vcor_app_sweep`
 module vcor_app_run
+   use vcor_app_bounces, only : bounces_report
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : report
-   use vcor_app_validity, only : about_numbers, measures_remark, &
-      measures_report, mechanics_of, name_of_exact, warn_of_data
+   use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
+      name_of_exact
+   use vcor_app_warnings, only : warn_of_data
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_outcome, only : bounces_of, outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
    use vcor_impact_validity, only : forgotten_base
@@ -16,7 +18,7 @@ module vcor_app_run
    use vcor_io_file, only : write_stdout
    use vcor_rounded, only : short
    use vcor_text, only : integer_text
-   use vcor_io_results, only : history_table, summary_table
+   use vcor_io_results, only : bounces_table, history_table, summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_solver_type, only : light_plate
@@ -57,7 +59,7 @@ contains
       call summary%put(1, row_of(outcome))
       if (.not. allocated(error)) call warn_of_data(job%case, job%sweep%grid, &
          summary)
-      allocate (tables(merge(2, 1, job%files%history)))
+      allocate (tables(1 + count([job%files%bounces, job%files%history])))
       call summary_table(tables(1), title, completed, job%sweep%grid, summary)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
@@ -68,7 +70,9 @@ contains
          return
       end if
       call end_of(job, outcome, worker%trajectory, error)
-      if (job%files%history) call history_table(tables(2), title, completed, &
+      if (job%files%bounces) call bounces_table(tables(2), title, completed, &
+         bounces_of(worker%problem%impact, worker%trajectory, outcome))
+      if (job%files%history) call history_table(tables(size(tables)), title, completed, &
          worker%problem%impact, worker%trajectory)
       call write_files(job%files, tables, files, trouble)
       if (allocated(trouble)) then
@@ -88,7 +92,7 @@ contains
       !> Write the report, including results of the exact mechanics
       subroutine write_screen()
          type(model_t) :: exact
-         character(len=:), allocatable :: lines, method
+         character(len=:), allocatable :: bounces, lines, method
          logical :: is_shown
 
          associate (reading => job%sweep%problem%reading)
@@ -110,6 +114,9 @@ contains
             end if
          end associate
          if (.not. is_shown) exact%outcome = outcome_t()
+         bounces = ''
+         if (job%files%bounces) bounces = bounces_report(bounces_of(worker%problem%impact, &
+            worker%trajectory, outcome), outcome%validity)
          associate (course => worker%trajectory)
             ! a kernel that is not a finite sum of exponentials was approximated
             if (course%kernel_terms > 0) lines = lines//as_line('kernel as a sum of ' &
@@ -119,8 +126,8 @@ contains
             ! `auto` uses direct if ive fails
             if (method == 'ive' .and. course%stages == 0) method = 'direct'
             call write_stdout(report(job%case%source, title, method, outcome, &
-               exact%outcome, name_of_exact(job%case), course%state(1, course%last), lines &
-               //remarks_on(job, outcome)//files), trouble)
+               exact%outcome, name_of_exact(job%case), course%state(1, course%last), bounces, &
+               lines//remarks_on(job, outcome)//files), trouble)
          end associate
       end subroutine write_screen
    end subroutine run_impact

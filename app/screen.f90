@@ -1,6 +1,7 @@
 !> Text for the screen: headings, lines of a name, a number and a unit; the report of an impact
 module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
+   use vcor_case_choices, only : topic_t
    use vcor_impact_outcome, only : none, outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_validity, only : level_caution, level_outside
@@ -13,7 +14,7 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, blocks, digits_of_level, heading, line, padded, right, visible
+   public :: report, blocks, screen_items, digits_of_level, heading, line, padded, right, visible
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -34,11 +35,31 @@ module vcor_app_screen
       '', '', '', '', '', '']), &
       block_t('what decides the loss', [character(len=20) :: 'peak_loss_tangent', &
       'peak_storage_modulus', 'loss_tangent', 'min_frequency', 'inelasticity', '', '', '', ''])]
+   !> Items on the screen of a run that are not columns
+   type(topic_t), parameter :: screen_items(*) = [ &
+      topic_t(' KE_1 ', &
+         'left to the sphere: its kinetic energy after the impact, KE_0 cor_sphere^2 [J]'), &
+      topic_t(' exponentials kernel ', &
+         "'kernel as a sum of 35 exponentials, to 6.0E-10': method ive writes a relaxation " &
+         //'modulus with a continuous spectrum (power law, CERF, Mittag-Leffler, tables, some ' &
+         //'pairs) as a sum of exponentials. Their number follows from solver.accuracy. The ' &
+         //'second number is the largest relative error of its integral over the contact time; ' &
+         //'cor_error includes it. A Prony series is such a sum already, so nothing is printed.'), &
+      topic_t(' +- ', &
+         'estimated numerical error of the number before it: cor_error or cor_sphere_error. It ' &
+         //'says nothing about the model or the material data.'), &
+      topic_t(' good caution outside ', &
+         'levels of validity, of which the worst counts. good: cor_sphere is within 2 % or 0.01 ' &
+         //'of exact mechanics (99 of 100 random impacts), caution: within 10 % or 0.05 ' &
+         //'(99 of 100), outside: the model is that of another impact. Each line has the ' &
+         //'measure, its value, what is off and what to do; vcor help MEASURE says what is ' &
+         //'measured.')]
 
 contains
 
    !> Report of one impact
-   function report(filename, title, method, outcome, exact, exact_name, time, files) result(text)
+   function report(filename, title, method, outcome, exact, exact_name, time, bounces, files) &
+      result(text)
       character(len=*), intent(in) :: filename
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: method
@@ -49,6 +70,8 @@ contains
       character(len=*), intent(in) :: exact_name
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
+      !> Table of bounces; may be empty
+      character(len=*), intent(in) :: bounces
       !> Notes and written files, one per line
       character(len=*), intent(in) :: files
       character(len=:), allocatable :: text
@@ -59,14 +82,14 @@ contains
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are still in contact at '//short(time)//' s (method ' &
             //method//' in '//steps_of(method, outcome)//'), status ' &
-            //trim(status_name(outcome%status))//nl
+            //trim(status_name(outcome%status))//nl//bounces
       else
          text = text//answer(outcome, exact, exact_name)//nl
          do i = 1, size(blocks)
             if (blocks(i)%title == 'what decides the loss') text = text//budget(outcome)//nl
             text = text//block_text(blocks(i), outcome, exact, exact_name)//nl
          end do
-         text = text//'  method '//method//' in '//steps_of(method, outcome)//nl
+         text = text//bounces//'  method '//method//' in '//steps_of(method, outcome)//nl
       end if
       text = text//files//nl
    end function report

@@ -7,8 +7,9 @@ module vcor_app_sweep
    use vcor_app_files, only : claim_files, remark, write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : blocks, digits_of_level, heading, padded, right
-   use vcor_app_validity, only : about_numbers, exact_points, points_remark, &
-      points_report, warn_of_data
+   use vcor_app_sweep_validity, only : exact_points, points_remark, points_report
+   use vcor_app_validity, only : about_numbers
+   use vcor_app_warnings, only : warn_of_data
    use vcor_case_grid, only : coordinates, grid_t
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_input, error_numerical, error_t, raise

@@ -11,8 +11,9 @@ module vcor_app_verify
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : status_name
    use vcor_text, only : integer_text
-   use vcor_verify_methods, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
-      attempt_refined, compare, compared_t, comparison_t, error_of_best, is_honest
+   use vcor_verify_agreement, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
+      attempt_refined, compared_t, comparison_t, error_of_best, is_honest
+   use vcor_verify_methods, only : compare
    use vcor_verify_models, only : model_t, solve_models
    use vcor_version, only : version
    implicit none

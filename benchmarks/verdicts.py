@@ -248,7 +248,7 @@ HEAD = (
 )
 #: Sentences with the shares of `good` and `caution` that are right, in 100: the text before the number and after it
 SENTENCES = {
-    "app/help.f90": (
+    "app/screen.f90": (
         (r"\(", r" of 100 random impacts\), caution", "good"),
         (r"\(", r" of 100\), outside", "caution"),
     ),

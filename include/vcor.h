@@ -55,7 +55,8 @@ enum {
 enum {
    VCOR_SUMMARY = 0,  /* one row per impact */
    VCOR_HISTORY = 1,  /* one row per time */
-   VCOR_COMPARED = 2  /* quantities that vcor_verify compares */
+   VCOR_COMPARED = 2, /* quantities that vcor_verify compares */
+   VCOR_BOUNCES = 3   /* one row per bounce */
 };
 
 typedef struct vcor_case vcor_case;
@@ -194,6 +195,11 @@ int vcor_beyond_data(vcor_case *self, int m, const char *const *addresses, int n
 /* History of a single impact: `*rows` rows of the columns of VCOR_HISTORY. An impact that does not end
  * in separation has one, too. */
 int vcor_history(vcor_case *self, int *rows, double **values, vcor_error *error);
+
+/* Bounces of a single impact: `*rows` rows of the columns of VCOR_BOUNCES, none if the sphere stays where it first
+ * touches, one without impact.bounces. The columns bouncing_time and bounces_end of vcor_solve say when and how they
+ * ended. */
+int vcor_bounces(vcor_case *self, int *rows, double **values, vcor_error *error);
 
 /* Relaxation modulus E(t) [Pa] of a material at n times >= 0 [s] */
 int vcor_relaxation(const vcor_case *self, const char *material, int n, const double *times,

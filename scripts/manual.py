@@ -218,6 +218,7 @@ PARTS = {
     "groups": groups,
     "summary": lambda document, man: columns(document["summary"], man),
     "history": lambda document, man: columns(document["history"], man),
+    "bounces": lambda document, man: columns(document["bounces"], man),
     "statuses": statuses,
 }
 

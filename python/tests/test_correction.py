@@ -201,6 +201,33 @@ def test_contacts_are_not_mixed():
     assert not made._are_smooth(points)
 
 
+@pytest.mark.parametrize(("spread", "is_smooth"), [("0.0005", True), ("0.0023", False)])
+def test_a_block_that_is_struck_again_is_not_corrected(monkeypatch, spread, is_smooth):
+    """Below 49 g the block of 55 g comes back to the ball: one sample in a hundred does, and thin
+    mechanics of all samples show it."""
+    case = vcor.Case({
+        "impact": {"velocity": 1.0}, "sphere": {"radius": 0.01, "material": "steel"},
+        "plate": {"material": "steel", "waves": "body"},
+        "target": {"body": "block", "mass": 0.055, "stiffness": 1e6},
+        "material": {"name": "steel", "model": "elastic", "modulus": 2.1e11, "density": 7850.0,
+                     "poisson_ratio": 0.3},
+    })  # fmt: skip
+    said = []
+    monkeypatch.setattr(uncertainty_samples, "say", lambda *words: said.append(words[3:]))
+    drawn = Drawn.of(case, {"target.mass": spread}, None, 192, ["cor_sphere"], 1)
+    found = sampled([drawn.plan], ["cor_sphere"], 1, None)
+    thin = case.copy()
+    thin["plate.waves"] = "none"
+    mass = drawn.plan.place(drawn.plan.z)[:, 0]
+    contacts = thin.points({"target.mass": mass}, ["contacts"]).contacts.values
+    assert (np.ptp(contacts) == 0) == is_smooth
+    assert (found.fresh == 20) == is_smooth and (found.solved == len(mass)) != is_smooth
+    # all samples of one contact have a result, those of two have none of their own here
+    assert (np.isfinite(found.found[0][:, 0]) == (contacts == 1)).all()
+    reasons = [words[0] for words in said if words]
+    assert is_smooth == (not reasons) and all("samples" in one for one in reasons)
+
+
 def test_bands_by_one_correction():
     """Of all points of a sweep at once, against samples that are solved at each."""
     case = thin_case("paper/sls.nml")
@@ -263,6 +290,46 @@ def test_an_exact_impact(tmp_path, capsys):
     solved = case._solve(list(vary), drawn.plan.place(drawn.plan.z[rows]), drawn.quantities, 0)[0]
     deviation = found.found[0].std(axis=0)
     assert (np.abs(found.found[0][rows] - solved) < TAILS * ACCURATE * deviation).all()
+
+
+BALL_ON_LAYER = """
+&impact velocity = 5.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate material = 'rubber', thickness = 0.03, base = 'bonded' /
+&contact mechanics = 'exact' /
+&material name = 'steel', model = 'elastic', modulus = 2.1e11, density = 7850.0,
+   poisson_ratio = 0.3 /
+&material name = 'rubber', model = 'sls', glassy_modulus = 1.5e7, alpha = 300.0, beta = 1200.0,
+   poisson_ratio = 0.45, density = 1100.0 /
+"""
+
+
+def test_a_ball_that_deforms_on_a_layer_that_relaxes():
+    """Thin mechanics have none; of a rigid one they do, without its modulus."""
+    case = vcor.Case(BALL_ON_LAYER)
+    vary = {"rubber.poisson_ratio": "1%", "rubber.beta": "5%", "steel.modulus": "20%"}
+    (thin,) = uncertainty_samples.thin_cases(case, list(vary)).values()
+    assert thin.reads.tolist() == [True, True, False] and thin.case["steel.model"] == "rigid"
+    assert case["steel.model"] == "elastic"
+    drawn = Drawn.of(case, vary, None, 512, ["cor_sphere", "max_force"], 1)
+    found = sampled([drawn.plan], drawn.quantities, 1, None)
+    assert found.fresh == 20 and found.solved < 100
+    rows = [0, 100, 200]
+    solved = case._solve(list(vary), drawn.plan.place(drawn.plan.z[rows]), drawn.quantities, 0)[0]
+    deviation = found.found[0].std(axis=0)
+    assert (np.abs(found.found[0][rows] - solved) < TAILS * ACCURATE * deviation).all()
+
+
+def test_values_beyond_a_range_that_thin_mechanics_do_not_read():
+    """They are no impacts, which a correction would not know: every sample is solved."""
+    case = vcor.Case(BALL_ON_LAYER)
+    case["steel.poisson_ratio"] = 0.49
+    drawn = [
+        Drawn.of(case, {"steel.poisson_ratio": spread}, None, 256, ["cor_sphere"], 1)
+        for spread in ("0.005", "0.001")
+    ]
+    made = [uncertainty_samples._Corrected([one.plan], ["cor_sphere"], 1, None) for one in drawn]
+    assert [one._are_in_range() for one in made] == [False, True]
 
 
 def test_files_of_exact_bands_say_how(tmp_path, capsys):

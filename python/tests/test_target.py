@@ -82,3 +82,39 @@ def _at(case, radius, velocity):
     one = case.copy()
     one["sphere.radius"], one["impact.velocity"] = radius, velocity
     return one.run()
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_a_heavy_block_below_a_layer_is_a_floor():
+    """Layers and bodies at random: the law of a layer, tabulated as deep as an impact may
+    go, is that for all depths, which an impact on a structure has."""
+    rng = np.random.default_rng(58)
+    for _ in range(20):
+        nu, power = rng.uniform(0.2, 0.5), rng.uniform(1, 4)
+        bodies = [
+            {"radius": 0.01},
+            {"shape": "cone", "half_angle": rng.uniform(60, 88)},
+            {"shape": "power", "profile_power": power,
+             "profile_coefficient": 50 * 0.01 ** (1 - power)},
+        ]  # fmt: skip
+        given = {
+            "impact": {"velocity": 10 ** rng.uniform(-2, 1)},
+            "sphere": {"material": "ball", "mass": 10 ** rng.uniform(-3, -1), **rng.choice(bodies)},
+            "plate": {"material": "pad", "thickness": 10 ** rng.uniform(-2.7, -1.3),
+                      "base": str(rng.choice(["bonded", "sliding"])), "waves": "none"},
+            "contact": {"law": "receding"},
+            "material": [
+                {"name": "ball", "model": "rigid"},
+                {"name": "pad", "model": "prony", "equilibrium_modulus": 10 ** rng.uniform(4, 6),
+                 "moduli": [1e7, 1e6], "times": [1e-4, 1e-2], "poisson_ratio": nu,
+                 "density": 1100.0},
+            ],
+        }  # fmt: skip
+        names = ["cor_sphere", "max_indentation", "max_force", "contact_time"]
+        block = given | {"target": {"body": "block", "mass": 1e12, "stiffness": 1e16}}
+        floor, block = (
+            np.array([*vcor.Case(one).points({"plate.thickness": [given["plate"]["thickness"]]},
+                                             names)[names].to_array().values[:, 0]])
+            for one in (given, block)
+        )  # fmt: skip
+        assert floor == pytest.approx(block, rel=1e-6)

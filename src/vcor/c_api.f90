@@ -1,50 +1,47 @@
-!> The C interface: what is computed of cases, which `vcor_c_api_cases` makes; include/vcor.h
-!> documents the functions of both
+!> The C interface: the points of cases, which `vcor_c_api_cases` makes, and the columns of their
+!> tables; include/vcor.h documents the functions
 !>
 !> Only one thread at a time handles texts, in the critical section `vcor_c_api`, because gfortran
 !> 12 keeps the length of a text returned by a function in static storage. Impacts are solved
 !> outside.
 module vcor_c_api
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
       c_loc, c_null_char, c_null_ptr, c_ptr
-   use vcor_c_api_handle, only : build, build_own, build_points, find_body, find_places, handle_t, &
-      open_case, open_points
-   use vcor_c_api_values, only : array_at, c_column_t, c_numbers, c_text, demand, get_array, &
-      new_column, put_column, put_copy, put_count, put_error, put_pointer, put_text, refuse_long, &
-      report_error
-   use vcor_case_case, only : address_t, case_t, operator(==)
+   use vcor_c_api_handle, only : build, build_own, build_points, find_places, handle_t, open_case, &
+      open_points
+   use vcor_c_api_values, only : array_at, c_column_t, c_numbers, c_text, demand, new_column, &
+      put_column, put_copy, put_count, put_error, put_pointer, put_text, refuse_long, report_error
    use vcor_case_checks, only : implausible_numbers, note_length, validate
+   use vcor_case_entries, only : address_t, operator(==)
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : problem_t
    use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
    use vcor_impact_history, only : history
-   use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : history_steps, trajectory_t
+   use vcor_impact_bounces, only : bounces_t
+   use vcor_impact_outcome, only : bounces_of, outcome_t
+   use vcor_impact_trajectory, only : history_steps
    use vcor_impact_validity, only : surroundings_t
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
-   use vcor_material_type, only : material_t
    use vcor_solver, only : settle
    use vcor_sweep_points, only : default_threads, failures_t, most_threads, solve_point, &
       solve_points, sweep_t, worker_t
-   use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
-      quantity_names, quantity_place, quantity_t, summary_t
-   use vcor_number, only : real_text
+   use vcor_sweep_quantity, only : bounce_quantities, bounce_values, history_quantities, &
+      new_summary, point_invalid, quantities, quantity_names, quantity_place, quantity_t, summary_t
    use vcor_text, only : integer_text, shortened
-   use vcor_verify_methods, only : attempt_first, compare, compared_names, comparison_t
-   use vcor_verify_models, only : model_t, solve_exact
+   use vcor_verify_agreement, only : compared_names
    use vcor_version, only : version
    use vcor_words, only : suggestion
    implicit none
    private
 
    public :: vcor_library_version, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
-      vcor_warnings, vcor_history, vcor_relaxation, vcor_complex_modulus, vcor_time_factor, &
-      vcor_verify, vcor_exact
+      vcor_warnings, vcor_history, vcor_bounces
 
    !> Tables for `vcor_column_of`
-   integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
+   integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2, &
+      bounce_columns = 3
    integer :: k
    !> The version as a C string
    character(kind=c_char), target :: version_text(len(version) + 1) = &
@@ -85,6 +82,8 @@ contains
          allocate (list, source=quantities())
       case (history_columns)
          allocate (list, source=history_quantities)
+      case (bounce_columns)
+         allocate (list, source=bounce_quantities)
       case (compared_columns)
          allocate (list, source=quantities())
          list = list([(quantity_place(trim(compared_names(i))), i=1, size(compared_names))])
@@ -393,13 +392,13 @@ contains
       if (allocated(error)) return
       if (size(values, 2) <= 1) handle%looked_at = places
       call implausible_numbers(sweep%case, sweep%grid, found)
-      if (.not. allocated(handle%told)) allocate (handle%told(0))
+      if (.not. allocated(handle%reported)) allocate (handle%reported(0))
       do i = 1, size(found)
          ! what is wrong with a value, wherever it stands
          flaw = found(i)
          flaw = flaw(index(trim(flaw(:index(flaw, ' = ') - 1)), ' ', back=.true.) + 1:)
-         if (any(handle%told == flaw)) cycle
-         handle%told = [handle%told, flaw]
+         if (any(handle%reported == flaw)) cycle
+         handle%reported = [handle%reported, flaw]
          notes = [notes, found(i)]
       end do
    end subroutine look
@@ -432,13 +431,58 @@ contains
       type(c_ptr), value :: rows, values, error
       integer(c_int) :: code
 
-      type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
-      type(sweep_t) :: sweep
       type(worker_t) :: worker
       type(outcome_t) :: outcome
-      type(address_t) :: none(0)
       real(wp), allocatable :: state(:, :)
+
+      call solve_alone(self, rows, values, worker, outcome, trouble)
+      if (.not. allocated(trouble)) then
+         call history(worker%problem%impact, worker%trajectory, history_steps, state)
+         call put_rows(state, rows, values, trouble)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_history
+
+   !> Compute the bounces of a single impact
+   function vcor_bounces(self, rows, values, error) bind(c) result(code)
+      type(c_ptr), value :: self
+      type(c_ptr), value :: rows, values, error
+      integer(c_int) :: code
+
+      type(error_t), allocatable :: trouble
+      type(worker_t) :: worker
+      type(outcome_t) :: outcome
+      type(bounces_t) :: bounces
+      real(wp), allocatable :: table(:, :)
+      integer :: i
+
+      call solve_alone(self, rows, values, worker, outcome, trouble)
+      if (.not. allocated(trouble)) then
+         bounces = bounces_of(worker%problem%impact, worker%trajectory, outcome)
+         allocate (table(size(bounce_quantities), bounces%count))
+         do i = 1, bounces%count
+            table(:, i) = bounce_values(i, bounces%list(i))
+         end do
+         call put_rows(table, rows, values, trouble)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_bounces
+
+   !> Solve a single impact of which rows are to be handed over
+   subroutine solve_alone(self, rows, values, worker, outcome, trouble)
+      !> `vcor_case`
+      type(c_ptr), intent(in) :: self
+      !> Number of rows and the rows, set to none
+      type(c_ptr), intent(in) :: rows, values
+      type(worker_t), intent(out) :: worker
+      type(outcome_t), intent(out) :: outcome
+      !> What is wrong; unallocated on success
+      type(error_t), allocatable, intent(out) :: trouble
+
+      type(handle_t), pointer :: handle
+      type(sweep_t) :: sweep
+      type(address_t) :: none(0)
       real(wp) :: nothing(0, 1)
 
       call put_count(rows, 0)
@@ -450,191 +494,24 @@ contains
       if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
       if (.not. allocated(trouble)) sweep = handle%sweep
 !$omp end critical (vcor_c_api)
-      if (.not. allocated(trouble)) then
-         call solve_point(sweep, 1, worker, outcome, trouble)
-         if (allocated(trouble)) then
+      if (allocated(trouble)) return
+      call solve_point(sweep, 1, worker, outcome, trouble)
+      if (.not. allocated(trouble)) return
 !$omp critical (vcor_c_api)
-            trouble%message = handle%case%source//': '//trouble%message
+      trouble%message = handle%case%source//': '//trouble%message
 !$omp end critical (vcor_c_api)
-         else
-            call history(worker%problem%impact, worker%trajectory, history_steps, state)
-            call put_copy(values, c_numbers(reshape(state, [size(state)])), trouble)
-            if (.not. allocated(trouble)) call put_count(rows, size(state, 2))
-         end if
-      end if
-      code = report_error(trouble, error)
-   end function vcor_history
+   end subroutine solve_alone
 
-   !> Compute the relaxation modulus of a material
-   function vcor_relaxation(self, material, n, times, moduli, error) bind(c) result(code)
-      type(c_ptr), value :: self, material
-      integer(c_int), value :: n
-      type(c_ptr), value :: times, moduli, error
-      integer(c_int) :: code
+   !> Hand over rows
+   subroutine put_rows(table, rows, values, trouble)
+      !> The rows, shape (columns, rows)
+      real(wp), intent(in) :: table(:, :)
+      type(c_ptr), intent(in) :: rows, values
+      !> What is wrong; unallocated on success
+      type(error_t), allocatable, intent(out) :: trouble
 
-      class(material_t), allocatable :: body
-      type(error_t), allocatable :: trouble
-      real(c_double), pointer :: t(:), modulus(:)
-      integer :: i
-
-      call find_body(self, material, body, trouble)
-      call get_array(n, times, 'times', t, trouble)
-      call get_array(n, moduli, 'moduli', modulus, trouble)
-      if (.not. allocated(trouble)) then
-         if (any(ieee_is_nan(t))) call raise(trouble, error_input, &
-            'found a time that is not a number, expected times >= 0 [s]')
-      end if
-      if (.not. allocated(trouble)) then
-         if (any(t < 0.0_wp)) &
-            call raise(trouble, error_input, 'found a negative time, expected times >= 0 [s]')
-      end if
-      if (.not. allocated(trouble)) then
-         do i = 1, n
-            modulus(i) = body%relaxation(t(i))
-         end do
-      end if
-      code = report_error(trouble, error)
-   end function vcor_relaxation
-
-   !> Compute storage and loss modulus of a material
-   function vcor_complex_modulus(self, material, n, frequencies, storage, loss, error) bind(c) &
-      result(code)
-      type(c_ptr), value :: self, material
-      integer(c_int), value :: n
-      type(c_ptr), value :: frequencies, storage, loss, error
-      integer(c_int) :: code
-
-      class(material_t), allocatable :: body
-      type(error_t), allocatable :: trouble
-      real(c_double), pointer :: omega(:), real_part(:), imaginary_part(:)
-      complex(wp) :: modulus
-      integer :: i
-
-      call find_body(self, material, body, trouble)
-      call get_array(n, frequencies, 'frequencies', omega, trouble)
-      call get_array(n, storage, 'storage', real_part, trouble)
-      call get_array(n, loss, 'loss', imaginary_part, trouble)
-      if (.not. allocated(trouble)) then
-         if (.not. all(ieee_is_finite(omega))) call raise(trouble, error_input, &
-            'found a frequency that is not a number or infinite, expected them >= 0 [rad/s]')
-      end if
-      if (.not. allocated(trouble)) then
-         if (any(omega < 0.0_wp)) call raise(trouble, error_input, &
-            'found a negative frequency, expected them >= 0 [rad/s]')
-      end if
-      if (.not. allocated(trouble)) then
-         do i = 1, n
-            modulus = body%complex_modulus(cmplx(0.0_wp, omega(i), wp))
-            real_part(i) = real(modulus, wp)
-            imaginary_part(i) = aimag(modulus)
-         end do
-      end if
-      code = report_error(trouble, error)
-   end function vcor_complex_modulus
-
-   !> Get the factor by which the temperature of the impact multiplies all times of a material
-   function vcor_time_factor(self, material, factor, error) bind(c) result(code)
-      type(c_ptr), value :: self, material, factor, error
-      integer(c_int) :: code
-
-      class(material_t), allocatable :: body
-      type(error_t), allocatable :: trouble
-      real(c_double), pointer :: place(:)
-
-      call find_body(self, material, body, trouble)
-      call get_array(1_c_int, factor, 'factor', place, trouble)
-      if (.not. allocated(trouble)) place = body%time_factor
-      code = report_error(trouble, error)
-   end function vcor_time_factor
-
-   !> Solve the case by all methods
-   function vcor_verify(self, results, error) bind(c) result(code)
-      type(c_ptr), value :: self, results, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-      type(case_t) :: case
-      type(problem_t) :: problem
-      type(comparison_t) :: comparison
-      real(c_double), pointer :: table(:, :)
-      integer :: i
-
-      nullify (table)
-      call open_case(self, handle, trouble)
-      call demand(results, 'results', trouble)
-      if (.not. allocated(trouble)) then
-         call c_f_pointer(results, table, [4, size(compared_names)])
-         table = ieee_value(1.0_wp, ieee_quiet_nan)
-      end if
-      if (.not. allocated(trouble)) call take_case(handle, case, problem, trouble)
-      if (.not. allocated(trouble)) then
-         call compare(case, problem, comparison, trouble)
-         if (allocated(trouble)) trouble%message = case%source//': '//trouble%message
-      end if
-      if (.not. allocated(trouble)) then
-         do i = 1, size(compared_names)
-            if (.not. comparison%separated) exit
-            associate (compared => comparison%compared(i))
-               table(:, i) = [compared%best, compared%value(attempt_first), &
-                  compared%direct%limit, real(compared%digits, wp)]
-               if (.not. comparison%two_methods) table(2, i) = ieee_value(1.0_wp, ieee_quiet_nan)
-            end associate
-         end do
-         if (allocated(comparison%objection)) call raise(trouble, error_numerical, &
-            case%source//': '//comparison%objection)
-      end if
-      code = report_error(trouble, error)
-   end function vcor_verify
-
-   !> Solve the case with exact mechanics
-   function vcor_exact(self, cor_sphere, error) bind(c) result(code)
-      type(c_ptr), value :: self, cor_sphere, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-      type(case_t) :: case
-      type(problem_t) :: problem
-      type(trajectory_t) :: trajectory
-      type(outcome_t) :: outcome
-      type(model_t) :: exact
-      real(c_double), pointer :: place(:)
-      logical :: differs
-
-      call open_case(self, handle, trouble)
-      call get_array(1_c_int, cor_sphere, 'cor_sphere', place, trouble)
-      if (.not. allocated(trouble)) call take_case(handle, case, problem, trouble)
-      if (.not. allocated(trouble)) then
-         place = ieee_value(1.0_wp, ieee_quiet_nan)
-         ! that the case has no result of its own does not matter
-         call problem%solve(trajectory, outcome, trouble)
-         if (allocated(trouble)) deallocate (trouble)
-         call solve_exact(case, outcome, exact, differs)
-         ! the mechanics of the case are exact
-         if (exact%waves == '') exact%outcome = outcome
-         place = exact%outcome%cor_sphere
-      end if
-      code = report_error(trouble, error)
-   end function vcor_exact
-
-   !> Copy a case and the problem of its impact, to solve them while others use the handle
-   subroutine take_case(handle, case, problem, error)
-      type(handle_t), intent(inout) :: handle
-      type(case_t), intent(out) :: case
-      type(problem_t), intent(out) :: problem
-      type(error_t), allocatable, intent(out) :: error
-
-      type(address_t) :: none(0)
-      real(wp) :: nothing(0, 1)
-
-!$omp critical (vcor_c_api)
-      call build(handle, none, nothing, error)
-      if (.not. allocated(error)) then
-         case = handle%case
-         problem = handle%sweep%problem
-      end if
-!$omp end critical (vcor_c_api)
-   end subroutine take_case
+      call put_copy(values, c_numbers(reshape(table, [size(table)])), trouble)
+      if (.not. allocated(trouble)) call put_count(rows, size(table, 2))
+   end subroutine put_rows
 
 end module vcor_c_api

@@ -8,12 +8,13 @@ module vcor_solver
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_solver_coupled, only : coupled_t, new_coupled
    use vcor_solver_direct_product, only : new_product, product_t
-   use vcor_solver_features, only : coupled, direct, features, method_for, method_in_use, &
-      refuse_features
+   use vcor_solver_features, only : coupled, direct, features, method_choices, method_for, &
+      method_in_use, refuse_features
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
    use vcor_solver_type, only : default_accuracy, features_of, solve_by => solve_impact, &
       solver_settings_t, solver_t
+   use vcor_words, only : join_words
    implicit none
    private
 
@@ -71,6 +72,9 @@ contains
       if (method == coupled .and. .not. impact%face%is_built()) then
          call raise(error, error_input, "method = 'coupled' needs the face of the impact: " &
             //'new_face builds it', 'method')
+      else if (settings%bounces > 1 .and. .not. impact%gravity > 0.0_wp) then
+         call raise(error, error_input, 'the sphere comes back under its weight only: expected ' &
+            //'gravity > 0, or bounces = 1', 'bounces gravity')
       else
          call refuse_features(has, error)
       end if
@@ -186,6 +190,7 @@ contains
          first = settings
          first%second_coefficient = 0.0_wp
          first%ghost = .false.
+         first%bounces = 1
          call new_ive(auto%ive, first, error)
          if (allocated(error)) return
          auto%settings = settings
@@ -198,7 +203,7 @@ contains
          call move_alloc(auto, solver)
       else if (settings%method /= 'direct' .and. settings%method /= 'auto') then
          call raise(error, error_input, "unknown method '"//trim(settings%method) &
-            //"'; known: auto, ive, direct, coupled")
+            //"'; known: "//join_words(method_choices))
       else if (settings%scheme == 'product') then
          allocate (product)
          call new_product(product, settings)

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from cases import SLS, edit
-from program import contents, program
+from program import FILE, contents, program
 
 PART = "case.part"
 FILES = ["case.h5", "case_summary.csv"]
@@ -64,13 +64,27 @@ def done_in(path):
     return max(0, path.read_bytes().count(b"\n") - 1)
 
 
-def interrupted(vcor, number=signal.SIGKILL, folder="out", *words, least=0):
-    """Run, wait until there is something to resume, of this many bytes at least, and send a
-    signal; what the run said."""
+def stopped_at(vcor, size, folder="out"):
+    """Run until the file of points would grow beyond this size [byte], which no time decides; the
+    file, which ends within a line."""
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    process = begin(vcor, folder=folder, preexec_fn=limit)
+    _, said = process.communicate()
+    assert process.returncode == FILE, said
+    part = vcor.folder / folder / PART
+    assert part.stat().st_size == size
+    return part
+
+
+def interrupted(vcor, number=signal.SIGKILL, folder="out", *words):
+    """Run, wait until there is something to resume, and send a signal; what the run said."""
     process = begin(vcor, *words, folder=folder)
     part = vcor.folder / folder / PART
     wait_for(part, process)
-    while part.stat().st_size < least or done_in(part) < 5:
+    while done_in(part) < 5:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     os.kill(process.pid, number)

@@ -20,6 +20,7 @@ from long_sweep import (
     done_in,
     interrupted,
     same_files,
+    stopped_at,
     sweep_text,
     wait_for,
     write_long_sweep,
@@ -27,30 +28,42 @@ from long_sweep import (
 from program import FILE, NAMES, NUMERICAL, USAGE, Vcor, complaint, program
 
 
-@pytest.fixture(scope="module")
-def solved(tmp_path_factory):
-    """A long sweep, and its undisturbed files in the folder ref."""
-    vcor = Vcor(tmp_path_factory.mktemp("long"))
-    write_long_sweep(vcor, 1.6)
+def undisturbed(folder, seconds):
+    """A sweep of this time, and its undisturbed files in the folder ref."""
+    vcor = Vcor(folder)
+    write_long_sweep(vcor, seconds)
     vcor.reference = vcor("run", "case.nml", "--output", "ref")
     assert vcor.reference.code == NUMERICAL
     return vcor
 
 
 @pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    """Long enough to be interrupted at some time."""
+    return undisturbed(tmp_path_factory.mktemp("long"), 1.6)
+
+
+@pytest.fixture(scope="module")
+def soon_solved(tmp_path_factory):
+    """Too short for a file of points."""
+    return undisturbed(tmp_path_factory.mktemp("short"), 0.1)
+
+
+@pytest.fixture(scope="module")
 def cut(solved):
-    """What a run leaves that is killed when it has most of the points: bytes of its file."""
+    """What a run leaves that has most of the points, so that the rest takes no time: bytes of its
+    file."""
     # a line has 17 bytes for each column
     points = (solved.folder / "ref" / "case_summary.csv").read_text().count("\n")
-    interrupted(solved, folder="cut", least=points * 17 * len(NAMES) // 2)
-    data = (solved.folder / "cut" / PART).read_bytes()
-    shutil.rmtree(solved.folder / "cut")
+    part = stopped_at(solved, points * 17 * len(NAMES) * 3 // 4, "cut")
+    data = part.read_bytes()
+    shutil.rmtree(part.parent)
     return data
 
 
 @pytest.fixture
 def left(long, cut):
-    """The file of a killed run in the folder of results."""
+    """The file of such a run in the folder of results."""
     part = long.folder / "out" / PART
     part.parent.mkdir()
     part.write_bytes(cut)
@@ -69,12 +82,23 @@ def few(left, vcor):
     return part, bare
 
 
-@pytest.fixture
-def long(vcor, solved):
+def in_folder_of(vcor, solved):
     """The same in the folder of the test."""
     shutil.copytree(solved.folder, vcor.folder, dirs_exist_ok=True)
     vcor.reference = solved.reference
     return vcor
+
+
+@pytest.fixture
+def long(vcor, solved):
+    """The long one."""
+    return in_folder_of(vcor, solved)
+
+
+@pytest.fixture
+def short(vcor, soon_solved):
+    """The short one."""
+    return in_folder_of(vcor, soon_solved)
 
 
 def untimed(text):
@@ -325,11 +349,11 @@ def test_resume_needs_files(vcor):
     vcor.refuses("check", "case.nml", "--resume", code=USAGE, says="--resume")
 
 
-def test_no_files(long):
+def test_no_files(short):
     """Without files of results there is none of finished points."""
-    done = long("run", "case.nml", "--print", "cor", "--threads", "1", "--quiet")
+    done = short("run", "case.nml", "--print", "cor", "--threads", "1", "--quiet")
     assert done.code == NUMERICAL
-    assert not list(long.folder.glob("*.part"))
+    assert not list(short.folder.glob("*.part"))
 
 
 def test_two_at_once(long):
@@ -447,9 +471,9 @@ def test_a_log_is_told_once(vcor):
     assert process.communicate() == ("", "")
 
 
-def test_no_progress(long):
-    assert on_terminal(long, "--quiet").startswith("vcor: error: ")
-    assert "\r" not in long.reference.err
+def test_no_progress(short):
+    assert on_terminal(short, "--quiet").startswith("vcor: error: ")
+    assert "\r" not in short.reference.err
 
 
 def test_structures(vcor):
@@ -461,7 +485,7 @@ def test_structures(vcor):
         "&plate material = 'steel' /\n&target body = 'modes', file = 'modes.csv' /\n"
         "&material name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3,\n"
         "   density = 7850 /\n"
-        "&sweep parameter = 'impact.velocity', start = 0.5, stop = 2.0, count = 20 /\n"
+        "&sweep parameter = 'impact.velocity', start = 0.5, stop = 2.0, count = 8 /\n"
     )
     vcor("run", "case.nml", "--output", "ref")
     interrupted(vcor)

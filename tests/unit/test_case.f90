@@ -6,12 +6,15 @@ program test_case
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
-   use vcor_words, only : edit_distance, nearest_name
+   use vcor_impact_shape, only : find_shape, other_shapes, shape_parameters, shapes, sphere_shapes
+   use vcor_solver_features, only : method_choices, method_table, methods
+   use vcor_words, only : contains_word, edit_distance, list_of_words, nearest_name
    use vcor_number, only : real_text
    use vcor_text, only : integer_text, is_utf8, printable, quoted, shortened
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
@@ -32,6 +35,7 @@ program test_case
 
    call suite("case")
    call test_catalogue()
+   call test_tables()
    call test_values()
    call test_places()
    call test_missing()
@@ -83,6 +87,51 @@ contains
       call check(find_key("impact", "speed") == 0, "what is not there is not found")
       call check(find_key("impact", repeat("velocity", 20)) == 0, "nor is what is too long")
    end subroutine test_catalogue
+
+   !> The tables of shapes and methods: each name has one row, no row lacks a text, and the names of
+   !> the keys are those of the rows
+   subroutine test_tables()
+      character(len=*), parameter :: names = sphere_shapes//" "//other_shapes
+      character(len=:), allocatable :: name
+      integer :: i
+
+      call check(size(list_of_words(names)) == size(shapes), "a row for each name of a shape")
+      do i = 1, size(shapes)
+         name = trim(shapes(i)%name)
+         call check(contains_word(names, name) .and. find_shape(name) == i, name//" is a choice")
+         call check(shapes(i)%meaning /= "" .and. is_short(shapes(i)%meaning), &
+            & name//" is explained")
+         call check(contains_word(sphere_shapes, name) &
+            & .or. any(shape_parameters%shape == shapes(i)%name), name//" has numbers")
+      end do
+      do i = 1, size(shape_parameters)
+         associate (number => shape_parameters(i)%parameter)
+            name = trim(number%name)
+            call check(find_shape(trim(shape_parameters(i)%shape)) > 0, name//" is of a shape")
+            call check(number%meaning /= "" .and. is_short(number%meaning) &
+               & .and. is_short(number%unit), name//" is explained")
+            call check(count(shape_parameters%parameter%name == number%name) == 1, &
+               & name//" stands for one number")
+         end associate
+      end do
+      do i = 1, size(list_of_words(method_choices))
+         associate (words => list_of_words(method_choices))
+            name = trim(words(i))
+         end associate
+         call check(name == "auto" .or. count(methods == name) == 1, name//" has a row")
+      end do
+      do i = 1, size(methods)
+         associate (method => method_table(i))
+            name = trim(method%name)
+            call check(method%meaning /= "" .and. is_short(method%meaning) .and. method%keys /= "" &
+               & .and. is_short(method%keys), name//" is explained")
+            call check(method%accuracy > 0.0_wp, name//" has an accuracy")
+            ! a scheme of another method has a key of its own
+            call check(contains_word(method_choices, name) .or. index(method%keys, "scheme") > 0, &
+               & name//" can be chosen")
+         end associate
+      end do
+   end subroutine test_tables
 
    !> Whether a text of fixed length has room at its end: one that is cut off has none
    pure function is_short(text) result(yes)

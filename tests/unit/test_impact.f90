@@ -65,6 +65,7 @@ program test_impact
    call test_radius()
    call test_law()
    call test_time_scale()
+   call test_deepest()
    call test_sample()
    call test_outcome()
    call test_stuck()
@@ -575,6 +576,41 @@ contains
          "T with the mean kernel over T")
       call check(ieee_is_nan(impact%inelasticity()), "a singular kernel has no lambda")
    end subroutine test_time_scale
+
+   !> The bound of the indentation is met by an elastic body without weight, and at rest by its
+   !> weight alone with a factor of 2^(1/n) for what energy and weight have in common
+   subroutine test_deepest()
+      real(wp), parameter :: mass = 0.05_wp, radius = 0.01_wp, velocity = 2.0_wp, g = 9.81_wp
+      type(impact_t) :: impact
+      type(contact_modulus_t) :: modulus
+      type(target_t) :: plate
+      type(error_t), allocatable :: error
+      real(wp) :: k
+
+      call new_plate(plate, glass, 0.0_wp, waves_none, error)
+      call new_contact_modulus(modulus, rigid, glass, .false., error)
+      call new_impact(impact, velocity, mass, radius, 0.0_wp, modulus, plate, error)
+      call success(error, "an elastic impact is built")
+      k = 4.0_wp/3.0_wp*sqrt(radius)*modulus%rubbery()
+      call check_relative(impact%deepest(), (1.25_wp*mass*velocity**2/k)**0.4_wp, rounding, &
+         "the energy is that of the spring")
+      call impact%launch(1.0e-9_wp, mass, impact%factor, error, g)
+      call check_relative(impact%deepest(), 2.0_wp**(2.0_wp/3.0_wp)*(2.5_wp*mass*g/k) &
+         **(2.0_wp/3.0_wp), rounding, "the weight's work is at most twice")
+      ! of a power law without an equilibrium modulus nothing is known
+      call new_contact_modulus(modulus, rigid, fluid(), .false., error)
+      call new_impact(impact, velocity, mass, radius, 0.0_wp, modulus, plate, error)
+      call check(.not. impact%deepest() < huge(1.0_wp), "a fluid has no bound")
+   end subroutine test_deepest
+
+   !> Power law without an equilibrium modulus
+   function fluid()
+      type(power_law_t) :: fluid
+      type(error_t), allocatable :: error
+
+      call new_power_law(fluid, 0.0_wp, 7.0e5_wp, 0.5_wp, error)
+      call success(error, "a fluid is built")
+   end function fluid
 
    !> Samples of a trajectory at equal steps
    subroutine test_sample()

@@ -30,6 +30,7 @@ program test_layer_law
    call test_share()
    call test_procedures()
    call test_kept()
+   call test_depths()
    call finish()
 
 contains
@@ -352,5 +353,43 @@ contains
       call lay(other, layer_t(base_sliding, 0.3_wp, 1.0_wp, thickness), profile_t(), hertz(), error)
       call check(.not. abs(other%u(s) - law%u(s)) > 0.0_wp, "the same law again, to the last bit")
    end subroutine test_kept
+
+   !> A law that is asked for small indentations is that for all, and the depth of a body is found
+   subroutine test_depths()
+      real(wp), parameter :: needed(4) = [1.0e-5_wp, 1.0e-3_wp, 0.02_wp, huge(1.0_wp)]
+      type(contact_law_t) :: law, again, whole
+      type(layer_t) :: layer
+      type(error_t), allocatable :: error
+      real(wp) :: s, before
+      integer :: i
+
+      layer = layer_t(base_bonded, 0.46_wp, 1.0_wp, thickness)
+      call make_law(whole, layer%base, layer%poisson_ratio, thickness)
+      before = 0.0_wp
+      do i = 1, size(needed)
+         call lay(law, layer, profile_t(), hertz(), error, needed(i))
+         call success(error, "a law up to an indentation is built")
+         call check(law%deepest() >= min(needed(i), whole%deepest()), "it reaches as far")
+         call check(law%deepest() > before, "and not much farther")
+         before = law%deepest()
+         s = min(needed(i), 0.99_wp*whole%deepest())
+         call check_relative(law%u(s), whole%u(s), accuracy, "the same force")
+         call check_relative(law%slope(s), whole%slope(s), of_slope, "the same stiffness")
+         call check_relative(law%radius(hertz(), s), whole%radius(hertz(), s), accuracy, &
+            "the same contact radius")
+      end do
+      ! what has been tabulated before leaves no trace
+      call lay(again, layer, profile_t(), hertz(), error, needed(1))
+      call lay(law, layer, profile_t(), hertz(), error, needed(1))
+      s = needed(1)
+      call check(.not. abs(law%u(s) - again%u(s)) > 0.0_wp, "the same, to the last bit")
+      call check(.not. abs(law%deepest() - again%deepest()) > 0.0_wp, "and as deep")
+      ! a punch has one contact radius
+      call new_contact_law(law, 1.0_wp, .false., error)
+      call lay(law, layer, profile_t(0.0_wp), punch_factor(3.0_wp*thickness), error, 1.0e-3_wp)
+      call check(law%deepest() > 1.0_wp, "a punch may go to any depth")
+      call check_relative(0.5_wp*punch_factor(3.0_wp*thickness)*law%slope(1.0e-3_wp), &
+         stiffness(layer, 3.0_wp*thickness), accuracy, "its stiffness is that of all depths")
+   end subroutine test_depths
 
 end program test_layer_law

@@ -7,8 +7,9 @@ program test_sweep
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
    use vcor_case_address, only : swept_addresses
-   use vcor_case_case, only : address_t, case_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
+   use vcor_case_entries, only : address_t, operator(==)
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &

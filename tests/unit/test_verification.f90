@@ -10,8 +10,9 @@ program test_verification
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
-   use vcor_verify_methods, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
-      compare, comparison_t, is_honest, judge_ends, judge_numbers
+   use vcor_verify_agreement, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
+      comparison_t, is_honest, judge_ends, judge_numbers
+   use vcor_verify_methods, only : compare
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite
    use vcor_test_cases, only : success

@@ -123,7 +123,7 @@ def _page(self: Case, *, port: int | None = None) -> "Live":
 
 Case.page = _page
 
-#: What needs scipy or reads files, by its module; imported when it is used
+#: Names that need scipy or read files, by their modules; imported when they are used
 _LATER = {
     "Fit": "materials.fit",
     "bands": "uncertainty_sweep",
@@ -147,6 +147,7 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
+    """Import a part of the package when it is used first."""
     if name in ("page", "plot"):
         return importlib.import_module(f"vcor.{name}")
     if name not in _LATER:

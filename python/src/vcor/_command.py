@@ -1,4 +1,4 @@
-"""What the commands share: options, and errors of one line."""
+"""Common parts of the commands: options, and errors of one line."""
 
 from __future__ import annotations
 
@@ -34,10 +34,11 @@ class Parser(argparse.ArgumentParser):
 
     #: Option whose value may begin with a dash, as -5C
     signed = ""
-    #: What to say of choices that another command has
+    #: Words about choices that another command has
     elsewhere: Mapping[str, str] = {}
 
     def __init__(self, name: str, **options: Any) -> None:
+        """A parser of `vcor NAME`, whose options are written in full."""
         super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
         self.add_argument("--version", action="version", version=f"vcor {__version__}")
 
@@ -97,6 +98,8 @@ def one_line() -> Iterator[None]:
     spoken = OPTIONS.set(OPTIONS.get())
     try:
         with warnings.catch_warnings():
+            # notes are a part of what a command says, whatever PYTHONWARNINGS is
+            warnings.simplefilter("default", UserWarning)
             warnings.showwarning = _note  # type: ignore[assignment]
             yield
     except Error as error:

@@ -47,7 +47,7 @@ class Coordinates:
 
     #: Which of them are uniform, the others normal, shape (coordinates,)
     uniform: NDArray[np.bool_]
-    #: What a power of each counts in the degree of a term, shape (coordinates,)
+    #: Weight of a power of each in the degree of a term, shape (coordinates,)
     weight: NDArray[np.int_]
     #: Highest power of each, shape (coordinates,)
     most: NDArray[np.int_]

@@ -1,4 +1,4 @@
-"""What results do not know of themselves: their validity, and data that do not cover an impact.
+"""Warnings about results: their validity, and data that do not cover an impact.
 
 The library judges both; what it says travels with each result, as warnings and as attributes.
 """
@@ -89,7 +89,7 @@ def about(
     asked: Sequence[str] | None = (),
     level: int = 3,
 ) -> dict[str, str]:
-    """What points do not know of themselves; warns of it.
+    """Attributes of points on validity and coverage; warns of them.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def about(
 
 
 def about_history(case: Case) -> dict[str, str]:
-    """What the impact of a history does not know of itself; warns of it."""
+    """Attributes of a history on the validity and coverage of its impact; warns of them."""
     with contextlib.suppress(Error):
         found, _ = case._solve([], np.empty((1, 0)), _JUDGED, 1)
         return about(case, [], np.empty((1, 0)), found, level=4)

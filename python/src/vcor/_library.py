@@ -39,7 +39,7 @@ class Error(Exception):
     """An error of vcor; its text is the line of the program, `code` the program's exit code."""
 
     code = 1
-    #: What there is of a result: the summary of an impact that does not separate, else None
+    #: Summary of an impact that does not separate, else None
     result: Any = None
 
     def __init__(self, message: str = "") -> None:
@@ -188,6 +188,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
         c_void_p, c_int, _texts, c_int, _doubles, _doubles, _doubles, _doubles, POINTER(c_void_p),
     ],
     "vcor_history": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
+    "vcor_bounces": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
     "vcor_time_factor": [c_void_p, c_char_p, POINTER(c_double)],
@@ -208,6 +209,7 @@ class Handle(c_void_p):
 
     # what modules hold may be gone when the interpreter ends
     def __del__(self, free: Any = _library.vcor_free) -> None:
+        """Release the case."""
         if self:
             free(self)
 
@@ -220,16 +222,18 @@ class _Worker:
     """A thread for the calls of the main thread, which Ctrl-C can only reach while it waits."""
 
     def __init__(self) -> None:
+        """Begin the thread; it waits for calls."""
         self._jobs: queue.SimpleQueue[Callable[[], int] | None] = queue.SimpleQueue()
         self._codes: queue.SimpleQueue[int] = queue.SimpleQueue()
         threading.Thread(target=self._work, name="vcor", daemon=True).start()
 
     def _work(self) -> None:
+        """Make the calls, one after the other."""
         while (job := self._jobs.get()) is not None:
             self._codes.put(job())
 
     def code(self, job: Callable[[], int]) -> int:
-        """What a call returns."""
+        """Code that a call returns."""
         self._jobs.put(job)
         while True:
             # a signal just before a wait does not end it
@@ -388,7 +392,7 @@ def texts(texts: tuple[str, ...]) -> Any:
 
 @functools.cache
 def columns(table: int) -> dict[str, Column]:
-    """Columns of a table by name: 0 the summary, 1 a history, 2 what is compared by verify."""
+    """Columns of a table by name: 0 summary, 1 history, 2 what is compared by verify, 3 bounces."""
     found: dict[str, Column] = {}
     struct = ColumnStruct()
     while _library.vcor_column_of(table, len(found), byref(struct)):

@@ -1,4 +1,4 @@
-"""What a command leaves: its report, its files and a figure."""
+"""Results of a command: its report, its files and a figure."""
 
 from __future__ import annotations
 

@@ -42,12 +42,14 @@ def option(name: str, value: Any = None) -> str:
 
 
 def _plain(value: Any) -> str:
+    """A value of an option as the shell has it."""
     if isinstance(value, tuple):
         return ":".join(map(_plain, value))
     return "VALUE" if value is ... else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _python(value: Any) -> str:
+    """A value of an option as Python has it."""
     if isinstance(value, Mapping):
         return f"{{{', '.join(f'{key!r}: {_python(one)}' for key, one in value.items())}}}"
     if isinstance(value, tuple):
@@ -65,7 +67,7 @@ GONE = {"half_space_loss": "wave_loss", "bending_loss": "wave_loss"}
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """What to add to a message about an unknown name: its successor, or a known one like it."""
+    """Addition to a message about an unknown name: its successor, or a known one like it."""
     if word in GONE:
         return f"; its place has been taken by {GONE[word]}"
     found = difflib.get_close_matches(word, list(known), 1)
@@ -101,7 +103,7 @@ def document(**entries: Any) -> dict[str, Any]:
 
 
 def name_flaw(name: str) -> str:
-    """What is wrong with the name of a file to be written, empty if nothing is."""
+    """Fault of the name of a file to be written, empty if there is none."""
     for part in name.split("/"):
         if part.startswith(("|", "<")):
             return f"'{name}' has a part that begins with '{part[0]}', a pipe to other programs"

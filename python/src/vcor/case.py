@@ -141,6 +141,10 @@ class Case:
     page: ClassVar[Callable[..., Any]]
 
     def __init__(self, source: str | Groups, *, name: str = "case.nml") -> None:
+        """Read the text of a case, or groups by their names; `name` stands in messages.
+
+        InputError: what the text or the groups have is wrong, or `source` is neither.
+        """
         if isinstance(source, Mapping):
             source = namelists(source)
         elif not isinstance(source, str) or "&" not in source:
@@ -411,13 +415,56 @@ class Case:
         attrs = self._attrs({}) | _coverage.about_history(self)
         return _dataset(variables, {"time": time_axis}, attrs)
 
+    def bounces(self) -> xr.Dataset:
+        """Bounces of a single impact under its weight, up to `impact.bounces`.
+
+        Returns
+        -------
+        xarray.Dataset
+            Time, velocity, coefficient of restitution, height and so on over `bounce`, as in the
+            files of the program; none if the sphere stays where it first touches. When and how they
+            ended is in the summary that `run` gives: `bouncing_time`, `bounces_end`. Attributes and
+            warnings as those of `run`.
+
+        Raises
+        ------
+        NumericalError
+            The solution failed.
+        InputError
+            The case is wrong, or a sweep.
+
+        Examples
+        --------
+        The restitution against the speed of impact from one drop:
+
+        >>> case = vcor.read("superball.nml")
+        >>> case.bounces().to_dataframe().plot("velocity", "cor")  # doctest: +SKIP
+        """
+        self._warn({})
+        columns = _library.columns(3)
+        variables: dict[str, Any] = {
+            name: (
+                "bounce",
+                row.astype(int) if columns[name].is_whole else row,
+                columns[name].attrs,
+            )
+            for name, row in self._rows("vcor_bounces", 3).items()
+        }
+        number = variables.pop("bounce")
+        attrs = self._attrs({}) | _coverage.about_history(self)
+        return _dataset(variables, {"bounce": number}, attrs)
+
     def _history(self) -> dict[str, Floats]:
         """Columns of the history by name, without warnings."""
-        names = list(_library.columns(1))
+        return self._rows("vcor_history", 1)
+
+    def _rows(self, function: str, table: int) -> dict[str, Floats]:
+        """Columns by name of a table that the library makes of a single impact."""
+        names = list(_library.columns(table))
         rows, pointer = c_int(), c_void_p()
-        call("vcor_history", self._pointer, byref(rows), byref(pointer))
-        values = _library.take_numbers(pointer, rows.value * len(names)).reshape(rows.value, -1).T
-        return dict(zip(names, values, strict=True))
+        call(function, self._pointer, byref(rows), byref(pointer))
+        values = _library.take_numbers(pointer, rows.value * len(names))
+        return dict(zip(names, values.reshape(rows.value, len(names)).T, strict=True))
 
     def verify(self) -> xr.Dataset:
         """Solve the case by all methods and compare them, as `vcor verify CASE` does.
@@ -564,7 +611,7 @@ class Case:
         return _dataset(variables, described, self._attrs(coords))
 
     def _attrs(self, coords: Mapping[str, tuple[str, Floats]]) -> dict[str, str]:
-        """What the program writes at the root of a file."""
+        """Attributes that the program writes at the root of a file."""
         try:
             text = self.text(complete=True)
         except InputError:

@@ -29,6 +29,10 @@ class Material:
     """
 
     def __init__(self, case: _HasHandle, name: str) -> None:
+        """Take the material `name` of a case.
+
+        InputError: the case has none, or no complete one.
+        """
         self._case = case
         self.name = name
         self.relaxation([])

@@ -499,7 +499,7 @@ def _sweep(wishes: _Wishes) -> Figure:
 
 
 def _bands(axis: Axes, number: int, x: Any, line: xr.Dataset, name: str, factor: float) -> None:
-    """What vcor uncertainty adds to a curve: shares of the samples, and exact mechanics."""
+    """Additions of vcor uncertainty to a curve: shares of the samples, and exact mechanics."""
     color = list(mpl.rcParams["axes.prop_cycle"])[number % MOST]["color"]
     for low, high, text, alpha in (("2.5", "97.5", "95 %", 0.2), ("16", "84", "68 %", 0.3)):
         if (bottom := f"{name}_p{low}") in line and (top := f"{name}_p{high}") in line:
@@ -774,6 +774,7 @@ def _scale(unit: str, *values: Any) -> tuple[float, str]:
 
 
 def _with_unit(text: str, unit: str) -> str:
+    """A label with its unit, if there is one."""
     return f"{text} [{unit}]" if unit else text
 
 
@@ -809,7 +810,7 @@ def _is_geometric(values: Floats) -> bool:
 
 
 def _adjust(made: Figure, wishes: _Wishes) -> None:
-    """What the user wants otherwise: labels, logarithmic axes and ranges; no text is a formula."""
+    """Apply choices of the user: labels, logarithmic axes and ranges; no text is a formula."""
     _name_axes(made, wishes.names)
     for axis in made.axes:
         texts = [axis.title, axis.xaxis.label, axis.yaxis.label, *axis.texts]

@@ -98,11 +98,13 @@ def _column(one: h5py.Dataset) -> xr.Variable:
 
 
 def _is_scale(one: h5py.Dataset) -> bool:
+    """Whether a dataset is the scale of a dimension."""
     # h5py of Debian 12 has no property for it
     return bool(h5py.h5ds.is_scale(one.id))
 
 
 def _name(one: h5py.Dataset) -> str:
+    """Name of a dataset in its group."""
     return str(one.name).rpartition("/")[2]
 
 

@@ -1,4 +1,4 @@
-"""What figures are made from: files of results, materials, and sweeps in memory."""
+"""Sources of figures: files of results, materials, and sweeps in memory."""
 
 from __future__ import annotations
 
@@ -26,6 +26,11 @@ class Result:
     """Results of a file, of a case that is solved, of a sweep, or materials of a file."""
 
     def __init__(self, source: Source, *, celsius: bool = False) -> None:
+        """Open a file, or take a Dataset or a case, which is solved.
+
+        Temperatures are in C where `celsius`, else in K. FileError or InputError: a file that
+        cannot be read, or has no results.
+        """
         self._held: dict[str, xr.Dataset] = {}
         self.groups: set[str] = set()
         if isinstance(source, xr.Dataset):
@@ -46,7 +51,7 @@ class Result:
         self.summary = _in_celsius(self.summary) if celsius else self.summary
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
-        #: What stands for it in a legend
+        #: Its label in a legend
         self.text = ""
         self.title = printable(str(self.summary.attrs.get("title", "")))
 

@@ -148,7 +148,12 @@ class Spread:
             raise InputError(
                 f"{option('covariance')}: found no parameter > 0 with a standard error"
             )
-        scaled = covariance[np.ix_(kept, kept)] / np.outer(values[kept], values[kept])
+        # each factor in turn: their product may underflow
+        with np.errstate(over="ignore"):
+            scaled = covariance[np.ix_(kept, kept)] / values[kept] / values[kept, None]
+        if (large := ~np.isfinite(scaled).all(axis=0)).any():
+            raise InputError(f"{option('covariance')}: found a standard error that is too large "
+                             f"for the value of {fit.addresses[kept[large][0]]}")  # fmt: skip
         weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
         if weights.min() < -1e-8 * weights.max():
             raise InputError(f"{option('covariance')}: the matrix is not positive")

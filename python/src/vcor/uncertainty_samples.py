@@ -3,13 +3,15 @@
 An impact with exact mechanics takes 50 ms, and a sweep asks for some 50,000. So the exact results
 are those of thin mechanics with a correction that is fitted to some hundred exact impacts
 (`_correction`), of all points of a sweep at once: the point of the sweep is one more coordinate.
-The error is measured at further exact impacts. Where it stays too large, or where results are not
-smooth (an impact without a result, another number of contacts), every sample is solved.
+Where thin mechanics do not read a parameter, the correction alone follows it. The error is measured
+at further exact impacts. Where it stays too large, or where results are not smooth (an impact
+without a result, another number of contacts), every sample is solved.
 """
 
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import os
 import time
@@ -33,8 +35,8 @@ from ._correction import (
 )
 from ._library import Error, Floats, NoResultWarning
 from ._text import option
-from .arguments import threads_of
-from .case import INVALID, SEPARATED, Case
+from .arguments import namelists, threads_of
+from .case import INVALID, SEPARATED, Case, number, with_material
 
 #: Part of the standard deviation over the samples that the error of a sample may have
 ACCURATE = 0.01
@@ -48,11 +50,13 @@ FEWEST = 32
 FIRST_DEGREE, FIRST_ALONG = 2, 5
 #: Highest power of the point of a sweep
 MOST_ALONG = 5
-#: Time that is announced, and that of the impacts that it is estimated from [s], and how many of
-#: these a core takes at most
-LONG, TRIAL, MOST_TRIED = 60.0, 0.3, 64
-#: Waves of thin mechanics
+#: Time that is announced, and that of the impacts that it is estimated from [s]
+LONG, TRIAL = 60.0, 0.3
+#: Samples of thin mechanics that their time is estimated from
+TRIED = 128
+#: Waves of thin mechanics, and what a rigid ball has of its material
 THIN_WAVES = ("hereditary", "none")
+RIGID_KEYS = ("name", "density", "poisson_ratio", "yield_strength")
 #: Columns that tell impacts apart between which results are not smooth
 STATE = ("status", "contacts")
 #: How often points are drawn in the place of those whose values make no impact
@@ -128,29 +132,42 @@ def sampled(
 
 
 def _solve(plan: Plan, z: Floats, quantities: Sequence[str], threads: int | None) -> Floats:
-    return plan.case._solve_all(plan.addresses, plan.place(z), list(quantities), threads, None)
+    return _solve_sorted(plan.case, plan.addresses, plan.place(z), quantities, threads)
+
+
+def _solve_sorted(
+    case: Case, addresses: list[str], table: Floats, names: Sequence[str], threads: int | None
+) -> Floats:
+    """Columns of points, shape (points, names), those of equal Poisson's ratios one by one.
+
+    Of these the law of a layer is made once; a Saltelli sample has few different values.
+    """
+    dear = [k for k, one in enumerate(addresses) if one.lower().endswith(".poisson_ratio")]
+    order = np.lexsort(table[:, dear].T) if dear else np.arange(len(table))
+    found = np.empty((len(table), len(names)))
+    found[order] = case._solve_all(addresses, table[order], list(names), threads, None)
+    return found
 
 
 def _announce(plans: Sequence[Plan], count: int, threads: int | None) -> None:
-    """Say how long the samples take, if that is long: some are solved, many at once."""
-    cores, length = _cores(threads), len(plans[0].z)
-    order = np.random.default_rng(0).permutation(count)
-    taken, size, begin = 0, cores, time.perf_counter()
-    while taken < min(count, MOST_TRIED * cores) and time.perf_counter() - begin < TRIAL:
-        rows = order[taken : taken + size]
-        for i in np.unique(rows // length):
+    """Say how long the samples take, if that is long: some of all plans are solved."""
+    size, each, begin = _cores(threads), 0.0, time.perf_counter()
+    while time.perf_counter() - begin < TRIAL and size <= len(plans[0].z):
+        start = time.perf_counter()
+        for plan in plans:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                _solve(plans[i], plans[i].z[rows[rows // length == i] % length], ["cor"], threads)
-        taken, size = taken + len(rows), 4 * size
-    say(plans[0].case, count, (time.perf_counter() - begin) / taken)
+                _solve(plan, plan.z[:size], ["cor"], threads)
+        # by the largest number, in which what is made once counts least
+        each, size = (time.perf_counter() - start) / (size * len(plans)), 4 * size
+    say(plans[0].case, count, count * each)
 
 
-def say(case: Case, impacts: int, each: float, why: str = "") -> None:
+def say(case: Case, impacts: int, seconds: float, why: str = "") -> None:
     """Say how long impacts take, if that is long."""
-    if impacts * each > LONG:
+    if seconds > LONG:
         warnings.warn(
-            f"{case.name}: {why}{impacts} impacts take some {math.ceil(impacts * each / 60)} min; "
+            f"{case.name}: {why}{impacts} impacts take some {math.ceil(seconds / 60)} min; "
             f"{option('samples')} with a smaller number takes less", stacklevel=2,
         )  # fmt: skip
 
@@ -159,20 +176,49 @@ def _cores(threads: int | None) -> int:
     return threads_of(threads) or len(os.sched_getaffinity(0))
 
 
-def thin_cases(case: Case) -> dict[str, Case]:
-    """The case with thin mechanics that it can have, by their waves."""
+@dataclass(frozen=True)
+class Thin:
+    """A case with thin mechanics."""
+
+    case: Case
+    #: Which of the addresses that vary it reads, shape (addresses,)
+    reads: NDArray[np.bool_]
+
+
+def thin_cases(case: Case, addresses: Sequence[str]) -> dict[str, Thin]:
+    """The case with thin mechanics that it can have, by their waves.
+
+    Thin mechanics know no ball that deforms on a layer that relaxes: there it is a rigid one.
+    """
     made = {}
-    for waves in THIN_WAVES:
-        one = case.copy()
+    for waves, is_rigid in itertools.product(THIN_WAVES, (False, True)):
+        if waves in made or (waves == case["plate.waves"] and not case._has_mesh):
+            continue
         try:
+            one = _with_rigid_ball(case) if is_rigid else case.copy()
             one["solver.method"] = "auto"
             one["plate.waves"] = waves
             one._solve([], np.empty((1, 0)), ["cor"], 1)
         except Error:
             continue
-        if waves != case["plate.waves"] or case._has_mesh:
-            made[waves] = one
+        made[waves] = Thin(one, np.array([_reads(one, case, address) for address in addresses]))
     return made
+
+
+def _with_rigid_ball(case: Case) -> Case:
+    """The case with a ball that does not deform."""
+    name = str(case["sphere.material"])
+    keys = {key: case[f"{name}.{key}"] for key in RIGID_KEYS}
+    given = {key: value for key, value in keys.items() if value is not None}
+    return with_material(case, name, namelists({"material": {"model": "rigid", **given}}))
+
+
+def _reads(thin: Case, case: Case, address: str) -> bool:
+    try:
+        thin._solve([address], np.array([[number(case, address)]]), ["cor"], 1)
+    except Error:
+        return False
+    return True
 
 
 @dataclass(frozen=True)
@@ -217,14 +263,19 @@ class _Corrected:
         self.design = qmc.Sobol(len(self.coordinates.uniform), seed=np.random.default_rng(seed))
         random = np.random.default_rng([seed, 1])
         self.fresh = lambda n: random.random((n, len(self.coordinates.uniform)))
-        self.thin = thin_cases(self.case)
+        #: Addresses of what varies, that of a sweep last
+        self.addresses = [*plans[0].addresses]
+        if self.along and plans[0].swept not in self.addresses:
+            self.addresses.append(plans[0].swept)
+        self.thin = thin_cases(self.case, self.addresses)
         #: Results of thin mechanics at the samples of each plan, where they were needed
         self.of_samples: dict[str, list[Floats]] = {}
         self.solved, self.seconds = 0, 0.0
         #: What results of each plan are divided by, shape (plans, quantities): those at its middle
         self.size = np.stack([np.where(plan.middle == 0, 1.0, plan.middle) for plan in plans])
         self.thin_size = {
-            name: self._results(one, np.arange(len(plans)), None) for name, one in self.thin.items()
+            name: self._results_thin(one, np.arange(len(plans)), None)
+            for name, one in self.thin.items()
         }
 
     def sampled(self, count: int) -> Sampled | None:
@@ -232,8 +283,10 @@ class _Corrected:
         terms = len(self.coordinates.terms(FIRST_ALONG if self.along else FIRST_DEGREE))
         number = 2 ** math.ceil(math.log2(max(FEWEST, POINTS_PER_TERM * terms)))
         further = max(FRESH, FRESH_OF_POINT * len(self.plans))
-        if not self.thin or number + further > count / 2:
+        if not self.thin or number + further > count / 2 or not self._are_in_range():
+            _announce(self.plans, count, self.threads)
             return None
+        names = list(self.thin)
         points, before = self._points(self.design.random, number, announced=True), math.inf
         while True:
             fresh = self._points(self.fresh, further)
@@ -244,8 +297,8 @@ class _Corrected:
                 why = "results jump between the samples"
                 break
             worst, error = math.inf, np.full(1, math.inf)
-            for count_of_thin in range(1, len(self.thin) + 1):
-                fitted = self._fitted(points, list(self.thin)[:count_of_thin])
+            for k in range(len(names)):
+                fitted = self._fitted(points, names[: k + 1])
                 if not fitted:
                     continue
                 correction, found = fitted
@@ -255,7 +308,7 @@ class _Corrected:
                     at = functools.partial(self._at, correction)
                     return Sampled(found, at, self.solved, len(fresh.z), error)
             if math.isinf(worst):
-                why = "thin mechanics have no result at some samples"
+                why = "thin mechanics have no results of one kind at all samples"
                 break
             # at the rate of the last round, a half at least; the first one has none
             rate = min(0.5, worst / before) if math.isfinite(before) else 0.25
@@ -267,39 +320,67 @@ class _Corrected:
             points = points.with_more(fresh)
             points = points.with_more(self._points(self.design.random, number))
             number, before = 2 * number, worst
-        say(self.case, count, self.seconds / self.solved, f"{why}: ")
+        say(self.case, count, count * self.seconds / self.solved, f"{why}: ")
         return None
 
-    def _values(self, which: NDArray[np.intp], z: Floats | None) -> tuple[list[str], Floats]:
-        """Addresses and their values at points of plans; None: at the middle of each."""
-        swept = self.plans[0].swept
-        given = [] if z is None else self.plans[0].addresses
-        table = np.empty((len(which), len(given)))
-        if z is not None:
-            for i in np.unique(which):
-                table[which == i] = self.plans[i].place(z[which == i, : len(given)])
-        if self.along and swept not in given:
-            given = [*given, swept]
-            table = np.column_stack([table, [self.plans[i].value for i in which]])
-        return given, table
+    def _are_in_range(self) -> bool:
+        """Whether all samples of parameters that no thin mechanics read are in their ranges.
 
-    def _results(
-        self, case: Case, which: NDArray[np.intp], z: Floats | None,
-    ) -> Floats:  # fmt: skip
-        """Columns of a case at points of plans, shape (points, columns)."""
-        given, table = self._values(which, z)
+        Of the others thin mechanics show which values make no impact.
+        """
+        trial = self.case.copy()
+        reads = np.any([one.reads for one in self.thin.values()], axis=0)
+        table = np.vstack([self._values(np.full(len(plan.z), i), plan.z)
+                           for i, plan in enumerate(self.plans)])  # fmt: skip
+        try:
+            for k in np.flatnonzero(~reads):
+                for end in (table[:, k].min(), table[:, k].max()):
+                    trial[self.addresses[k]] = float(end)
+        except Error:
+            return False
+        return True
+
+    def _values(self, which: NDArray[np.intp], z: Floats) -> Floats:
+        """Values at the addresses at points of plans, shape (points, addresses)."""
+        n = len(self.plans[0].addresses)
+        table = np.empty((len(which), len(self.addresses)))
+        for i in np.unique(which):
+            table[which == i, :n] = self.plans[i].place(z[which == i, :n])
+        if len(self.addresses) > n:
+            table[:, n] = [self.plans[i].value for i in which]
+        return table
+
+    def _results(self, which: NDArray[np.intp], z: Floats) -> Floats:
+        """Columns of the case at points of plans, shape (points, columns)."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NoResultWarning)
+            return self.case._solve_all(
+                self.addresses, self._values(which, z), self.columns, self.threads, None
+            )
+
+    def _results_thin(self, thin: Thin, which: NDArray[np.intp], z: Floats | None) -> Floats:
+        """Columns of thin mechanics at points of plans, None: at the middle of each."""
+        if z is None:
+            given = [self.plans[0].swept] * self.along
+            table = np.array([[self.plans[i].value for i in which]] * self.along)
+            table = table.T.reshape(len(which), self.along)
+        else:
+            given = [one for one, read in zip(self.addresses, thin.reads, strict=True) if read]
+            table = self._values(which, z)[:, thin.reads]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", NoResultWarning)
             if not given:
-                return case._solve(given, table, self.columns, 1)[0]
-            return case._solve_all(given, table, self.columns, self.threads, None)
+                found = thin.case._solve(given, np.empty((1, 0)), self.columns, 1)[0]
+                return np.repeat(found, len(which), axis=0)
+            return _solve_sorted(thin.case, given, table, self.columns, self.threads)
 
     def _points(
         self, shares: Callable[[int], Floats], number: int, announced: bool = False
     ) -> _Points:
         """A number of points at shares of the distributions, and their results.
 
-        Values that make no impact are left out. The first points say how long all take.
+        Values that make no impact are left out. The first points say how long all take, with the
+        samples of thin mechanics.
         """
         state = self.columns.index("status")
         which, z = np.empty(0, dtype=np.intp), np.empty((0, len(self.coordinates.uniform)))
@@ -313,18 +394,19 @@ class _Corrected:
             if self.along:
                 of = (share[:, -1] * len(self.plans)).astype(np.intp)
                 new[:, -1] = self._place_along(of)
-            found = {name: self._results(one, of, new) for name, one in self.thin.items()}
+            found = {name: self._results_thin(one, of, new) for name, one in self.thin.items()}
             kept = np.all([one[:, state] != INVALID for one in found.values()], axis=0)
             kept &= np.cumsum(kept) <= number - len(z)
             which, z = np.concatenate([which, of[kept]]), np.vstack([z, new[kept]])
             thin = {name: np.vstack([one, found[name][kept]]) for name, one in thin.items()}
         exact, begin, trial = [], time.perf_counter(), min(2 * _cores(self.threads), len(z) - 1)
         for part in (slice(0, trial), slice(trial, len(z))):
-            exact.append(self._results(self.case, which[part], z[part]))
+            exact.append(self._results(which[part], z[part]))
             self.solved += len(exact[-1])
             if announced and part.start == 0:
                 more = len(self.plans) * OTHERS * len(self.plans[0].addresses)
-                say(self.case, len(z) + more, (time.perf_counter() - begin) / trial)
+                seconds = (len(z) + more) * (time.perf_counter() - begin) / trial
+                say(self.case, len(z) + more, seconds + self._time_of_samples())
         self.seconds += time.perf_counter() - begin
         return _Points(which, z, thin, np.vstack(exact))
 
@@ -369,15 +451,24 @@ class _Corrected:
         kind.
         """
         if name not in self.of_samples:
-            self.of_samples[name] = [
-                self._results(self.thin[name], np.full(len(plan.z), i), plan.z)
-                for i, plan in enumerate(self.plans)
-            ]
+            self.of_samples[name] = np.split(self._samples_of(name), len(self.plans))
         known = np.vstack(self.of_samples[name])
         status, contacts = (known[:, self.columns.index(column)] for column in STATE)
         good = status == SEPARATED
         return bool(good.any() and (good | (status == INVALID)).all()
                     and np.ptp(contacts[good]) == 0)  # fmt: skip
+
+    def _samples_of(self, name: str, most: int | None = None) -> Floats:
+        """Columns of thin mechanics at the samples of all plans, or at the first ones of each."""
+        z = [plan.z[:most] for plan in self.plans]
+        which = np.repeat(np.arange(len(z)), len(z[0]))
+        return self._results_thin(self.thin[name], which, np.vstack(z))
+
+    def _time_of_samples(self) -> float:
+        """About how long the samples of thin mechanics take [s]."""
+        size, begin = max(1, TRIED // len(self.plans)), time.perf_counter()
+        self._samples_of(next(iter(self.thin)), size)
+        return (time.perf_counter() - begin) * len(self.plans[0].z) / size
 
     def _at_samples(self, correction: Correction, i: int, names: list[str]) -> Floats:
         """Results of the samples of a plan; nan where the values make no impact."""
@@ -392,13 +483,13 @@ class _Corrected:
         """Results of a plan at coordinates, shape (points, quantities)."""
         which = np.full(len(z), i)
         needed = {key[0] for key in correction.keys if key}
-        thin = {name: self._results(self.thin[name], which, z) for name in needed}
+        thin = {name: self._results_thin(self.thin[name], which, z) for name in needed}
         found = self._corrected(correction, which, z, thin)
         # beyond the ends of uniform distributions the correction knows nothing
         uniform = np.array(self.plans[i].uniform)
         beyond = np.flatnonzero((np.abs(z[:, uniform]) > math.sqrt(3) + 1e-9).any(axis=1))
         if beyond.size:
-            found[beyond] = self._results(self.case, which[beyond], z[beyond])[:, : found.shape[1]]
+            found[beyond] = self._results(which[beyond], z[beyond])[:, : found.shape[1]]
         return found
 
     def _corrected(

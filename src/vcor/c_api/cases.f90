@@ -8,10 +8,11 @@ module vcor_c_api_cases
    use vcor_c_api_handle, only : find_place, follow, forget, handle_t, note, open_case, whole_folder
    use vcor_c_api_values, only : c_column_t, c_text, demand, new_column, put_column, put_copy, &
       put_pointer, refuse_long, report_error
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, groups, list_key
    use vcor_case_checks, only : validate
    use vcor_case_described, only : described_groups
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_case_printed, only : case_text, value_text
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_case_reader, only : add_materials, override, read_case, read_case_text
@@ -90,7 +91,7 @@ contains
          other%case = handle%case
          other%place = handle%place
          if (allocated(handle%tuned)) other%tuned = handle%tuned
-         if (allocated(handle%told)) other%told = handle%told
+         if (allocated(handle%reported)) other%reported = handle%reported
          if (allocated(handle%solver)) allocate (other%solver, source=handle%solver)
          call put_pointer(copy, c_loc(other))
 !$omp end critical (vcor_c_api)

@@ -6,7 +6,7 @@ module vcor_c_api_coverage
    use vcor_c_api_handle, only : build_own, build_points, examined_t, find_places, handle_t, &
       open_case, open_points, shortens_only
    use vcor_c_api_values, only : c_text, demand, get_array, put_copy, put_pointer, report_error
-   use vcor_case_case, only : address_t, operator(==)
+   use vcor_case_entries, only : address_t, operator(==)
    use vcor_case_inputs, only : is_same
    use vcor_error, only : error_t, error_usage, raise
    use vcor_impact_trajectory, only : contact_separated

@@ -5,9 +5,10 @@ module vcor_c_api_handle
    use vcor_c_api_values, only : array_at, demand
    use vcor_case_address, only : material_names, resolve, swept_addresses
    use vcor_case_body, only : material_of_case
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, groups, real_key
    use vcor_case_checks, only : note_length, validate
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_validity, only : surroundings_t
    use vcor_io_data_file, only : read_data
@@ -55,7 +56,7 @@ module vcor_c_api_handle
       !> none
       type(address_t), allocatable :: looked_at(:)
       !> Notes on implausible numbers that were handed over, without the place of the number
-      character(len=note_length), allocatable :: told(:)
+      character(len=note_length), allocatable :: reported(:)
       !> Single impacts about which `vcor_beyond_data` was asked last; unallocated: none
       type(examined_t), allocatable :: examined
       !> What is common to its impacts
@@ -262,7 +263,7 @@ contains
          ! a value or a list in the case has no effect on points that bring their own
          address = places(i)
          address%element = 0
-         call case%oust(address, always=.true.)
+         call case%drop_alternative(address, always=.true.)
          entry = case%entry(address)
          if (allocated(entry%origin)) then
             deallocate (entry%origin)

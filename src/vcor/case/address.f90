@@ -1,8 +1,9 @@
 !> Addresses from their paths, `group.key` and `material_name.key`, and messages about unknown names
 module vcor_case_address
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, group_names, groups, keys_of, &
       list_key
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_text, only : canonical_name, integer_text, shortened
    use vcor_words, only : join_words, nearest_name, suggestion
    implicit none

@@ -1,9 +1,10 @@
 !> The materials of a case
 module vcor_case_body
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, first_row, key_row, last_row, list_key
    use vcor_case_cause, only : explain
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_t
    use vcor_kinds, only : wp

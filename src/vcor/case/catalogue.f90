@@ -2,15 +2,17 @@
 !>
 !> Reading, checking, printing, sweeps and help follow from it. A new key needs a new row here and
 !> code that reads its value, see `vcor_case_reading`. The keys of `&material` come from the
-!> parameters of the models, a row for each key of each model; rows of one key have the same kind
-!> and default. Texts have fixed lengths, as arrays of constants require; a unit test fails if one
-!> is full.
+!> parameters of the models, a row for each key of each model, and those of `&sphere` in part from
+!> the shapes; rows of one key have the same kind and default. Texts have fixed lengths, as arrays
+!> of constants require; a unit test fails if one is full.
 module vcor_case_catalogue
+   use vcor_impact_shape, only : other_shapes, shape_parameters, sphere_shapes
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models
    use vcor_material_type, only : density
    use vcor_number, only : interval_t, interval_text, positive
    use vcor_material_shift, only : shift_laws, shift_parameters
+   use vcor_solver_features, only : method_choices
    use vcor_text, only : lower
    use vcor_words, only : contains_word, join_words
    implicit none
@@ -84,6 +86,7 @@ module vcor_case_catalogue
       upper=coarsest_accuracy)
    type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
    type(interval_t), parameter :: of_a_grid = interval_t(lower=1.0_wp, upper=real(most_points, wp))
+   type(interval_t), parameter :: of_bounces = interval_t(lower=1.0_wp, upper=1000.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
    !> Of damping ratios: a mode that does not oscillate has none
    type(interval_t), parameter :: of_damping = interval_t(0.0_wp, 1.0_wp, upper_open=.true.)
@@ -119,26 +122,24 @@ module vcor_case_catalogue
       key_t("impact", "gravity", real_key, &
          "Gravity g along the impact, 0 on a pendulum; default: none; drop_height falls with " &
          //"9.80665", "m/s2", not_negative), &
+      key_t("impact", "bounces", integer_key, "Bounces under the weight to follow, at most; " &
+         //"direct only", range=of_bounces, default="1"), &
       !
       key_t("sphere", "shape", text_key, "Shape of the body", &
-         choices="sphere true_sphere cone punch power", default="sphere"), &
-      key_t("sphere", "radius", real_key, "Radius", "m", positive, models="sphere true_sphere", &
+         choices=sphere_shapes//" "//other_shapes, default="sphere"), &
+      key_t("sphere", "radius", real_key, "Radius", "m", positive, models=sphere_shapes, &
          required=.true., instead="diameter"), &
       key_t("sphere", "diameter", real_key, "Diameter, instead of radius", "m", positive, &
-         models="sphere true_sphere"), &
+         models=sphere_shapes), &
       key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
       key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
-         positive, models="sphere true_sphere"), &
-      key_t("sphere", "mass", real_key, "Mass", "kg", positive, models="cone punch power", &
+         positive, models=sphere_shapes), &
+      key_t("sphere", "mass", real_key, "Mass", "kg", positive, models=other_shapes, &
          required=.true.), &
-      key_t("sphere", "half_angle", real_key, "Angle between the axis of a cone and its side", &
-         "deg", interval_t(0.0_wp, 90.0_wp, .true., .true.), models="cone", required=.true.), &
-      key_t("sphere", "punch_radius", real_key, "Radius of a flat punch", "m", positive, &
-         models="punch", required=.true.), &
-      key_t("sphere", "profile_coefficient", real_key, "C of a profile z = C r^p", "m^(1-p)", &
-         positive, models="power", required=.true.), &
-      key_t("sphere", "profile_power", real_key, "p of a profile z = C r^p", &
-         range=interval_t(lower=1.0_wp, lower_open=.true.), models="power", required=.true.), &
+      (key_t("sphere", shape_parameters(i)%parameter%name, real_key, &
+         shape_parameters(i)%parameter%meaning, shape_parameters(i)%parameter%unit, &
+         shape_parameters(i)%parameter%range, models=shape_parameters(i)%shape, &
+         required=.true.), i=1, size(shape_parameters)), &
       !
       key_t("plate", "half_thickness", real_key, &
          "Half the thickness; not needed without waves; if omitted with 'body': a half space", &
@@ -252,7 +253,7 @@ module vcor_case_catalogue
       !
       key_t("solver", "method", text_key, &
          "auto: coupled for waves = 'body', direct for the paper's variants, otherwise ive", &
-         choices="auto ive direct coupled", default="auto"), &
+         choices=method_choices, default="auto"), &
       key_t("solver", "scheme", text_key, "Scheme of the direct method", &
          choices="product adams_bashforth", default="product"), &
       key_t("solver", "time_step", real_key, "Time step; default: chosen by the solver", &

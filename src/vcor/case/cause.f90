@@ -3,9 +3,10 @@
 !> Constructors have arguments, not keys: an error names them in `error%about`, and the material in
 !> `error%item`. The keys have the names of the arguments.
 module vcor_case_cause
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       keys_of, last_row, list_key
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_t
    use vcor_text, only : integer_text, quoted, shortened

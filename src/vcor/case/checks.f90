@@ -5,14 +5,16 @@ module vcor_case_checks
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_address, only : material_names, swept_addresses
-   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, key_row, &
       keys_of, last_row, list_key, real_key, row_for_model, text_key, wanted
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : value_text
    use vcor_case_body, only : material_of_case
    use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_values, only : range_message
+   use vcor_impact_shape, only : find_shape, shapes
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
    use vcor_material_shift, only : coldest, key_laws, keys_needed, shift_keys
@@ -267,7 +269,8 @@ contains
       end if
       do i = 1, size(own_rules)
          ! a flat punch does not recede, and the pair of a rigid body is none
-         if (own_rules(i)%key == 'law' .and. self%model(find_group('sphere'), 1) == 'punch') cycle
+         if (own_rules(i)%key == 'law' &
+             .and. .not. shapes(find_shape(self%model(find_group('sphere'), 1)))%recedes) cycle
          if (own_rules(i)%key == 'pair' .and. why_no_pair(self) /= '') cycle
          if (own_rules(i)%method == coupled) call demand(trim(own_rules(i)%group), &
             trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'")

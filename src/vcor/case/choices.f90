@@ -1,6 +1,8 @@
 !> Meanings of the words that a key can have, and the words of the field that lead to them: what
 !> `vcor help` and the reference of the input say in addition to the catalogue
 module vcor_case_choices
+   use vcor_impact_shape, only : shapes
+   use vcor_solver_features, only : method_table, methods
    implicit none
    private
 
@@ -21,18 +23,14 @@ module vcor_case_choices
       !> Its names, lower case, between blanks
       character(len=64) :: words
       !> What it means here, and which keys have to do with it
-      character(len=400) :: meaning
+      character(len=480) :: meaning
    end type topic_t
 
+   integer :: i
    !> The words, in the order of the catalogue; those of units, of spacing and of yes and no explain
-   !> themselves
+   !> themselves. A method that is a scheme of another is no choice of `solver.method`
    type(choice_t), parameter :: choices(*) = [ &
-      choice_t('sphere.shape', 'sphere', 'a paraboloid of this radius, as Hertz has it'), &
-      choice_t('sphere.shape', 'true_sphere', &
-         'the sphere itself, for contacts that are not small'), &
-      choice_t('sphere.shape', 'cone', 'a cone of this half_angle'), &
-      choice_t('sphere.shape', 'punch', 'a flat cylinder of this punch_radius'), &
-      choice_t('sphere.shape', 'power', 'a body of revolution z = C r^p'), &
+      (choice_t('sphere.shape', shapes(i)%name, shapes(i)%meaning), i=1, size(shapes)), &
       choice_t('plate.waves', 'none', &
          'no waves: a half space, a second sphere, a layer'), &
       choice_t('plate.waves', 'constant', &
@@ -83,10 +81,7 @@ module vcor_case_choices
          'activation energy: ln a_T = (E_a/R)(1/T - 1/T_ref)'), &
       choice_t('material.shift', 'table', 'log10 a_T against T, from shift_file'), &
       choice_t('solver.method', 'auto', 'the method that suits the impact'), &
-      choice_t('solver.method', 'ive', &
-         'internal variables of a sum of exponentials, by collocation'), &
-      choice_t('solver.method', 'direct', 'time steps of the integral equation'), &
-      choice_t('solver.method', 'coupled', "contact and waves together, of waves = 'body'"), &
+      (choice_t('solver.method', methods(i), method_table(i)%meaning), i=1, size(methods)), &
       choice_t('solver.scheme', 'product', 'product integration: order 2 to 5/2, always stable'), &
       choice_t('solver.scheme', 'adams_bashforth', "the paper's explicit scheme"), &
       choice_t('solver.form', 'a', 'by parts: the rate of u'), &

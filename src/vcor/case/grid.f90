@@ -7,9 +7,10 @@ module vcor_case_grid
    use vcor_error, only : error_file, error_t, raise
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve
-   use vcor_case_case, only : address_t, case_t, operator(==)
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, most_points, real_key, &
       row_for_model
+   use vcor_case_entries, only : address_t, operator(==)
    use vcor_number, only : log_spacing, real_text, spaced
    use vcor_rounded, only : plain_number
    use vcor_text, only : integer_text, link_name, shortened
@@ -99,7 +100,7 @@ contains
       places = self%places(point)
       other = case
       do i = 1, size(places)
-         call other%oust(self%axes(i)%address, always=.true.)
+         call other%drop_alternative(self%axes(i)%address, always=.true.)
          call other%set(self%axes(i)%address, self%axes(i)%values(places(i)))
       end do
    end function case_at

@@ -11,6 +11,7 @@ module vcor_case_inputs
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_impact_contact, only : pair_eq1
    use vcor_impact_face, only : base_free
+   use vcor_impact_shape, only : shape_parameters, shape_sphere
    use vcor_impact_target, only : waves_relaxing
    use vcor_kinds, only : pi, standard_gravity, unset, wp
    use vcor_material, only : material_data_t
@@ -18,14 +19,10 @@ module vcor_case_inputs
    implicit none
    private
 
-   public :: inputs_t, target_inputs_t, quantity_t, is_same
-   public :: shape_sphere, shape_true_sphere, shape_cone, shape_punch, shape_power
+   public :: inputs_t, target_inputs_t, input_key_t, is_same
    public :: waves_body, of_sphere, of_plate, of_target, positive_or_zero
    public :: target_none, target_plate, target_beam, target_rod, target_block, target_modes
 
-   !> Shapes of the striking body
-   integer, parameter :: shape_sphere = 1, shape_true_sphere = 2, shape_cone = 3, shape_punch = 4, &
-      shape_power = 5
    !> Waves in a plate of any thickness, beside the `waves_*` of a thin one
    integer, parameter :: waves_body = 5
    !> Places of the bodies; the last one is the structure that carries the struck surface
@@ -64,18 +61,14 @@ module vcor_case_inputs
       real(wp) :: velocity = unset, drop_height = unset
       !> Gravity along the impact [m/s2]
       real(wp) :: gravity = unset
-      !> One of the `shape_*` constants
+      !> Place of the shape in `shapes` of `vcor_impact_shape`
       integer :: shape = shape_sphere
       !> Radius of a sphere [m]
       real(wp) :: radius = unset
       !> Mass of the striking body [kg]; not given: that of a sphere of this radius
       real(wp) :: mass = unset
-      !> Angle between axis and side of a cone [deg]
-      real(wp) :: half_angle = unset
-      !> Radius of a flat punch [m]
-      real(wp) :: punch_radius = unset
-      !> C [m^(1-p)] and p [-] of a profile z = C r^p
-      real(wp) :: profile_coefficient = unset, profile_power = unset
+      !> Numbers of other shapes, in the order and the units of `shape_parameters`
+      real(wp) :: shape_numbers(size(shape_parameters)) = unset
       !> Materials of sphere, plate and structure; their lists are compared by identities
       type(material_data_t) :: material(3)
       !> Yield strengths of sphere and plate [Pa]
@@ -111,7 +104,7 @@ module vcor_case_inputs
    end type inputs_t
 
    !> A number of the inputs that varies: the key and the bodies that it belongs to
-   type :: quantity_t
+   type :: input_key_t
       !> Its key
       character(len=26) :: key = ''
       !> Whether it is of the material of the sphere, of the plate, and of the structure
@@ -120,7 +113,7 @@ module vcor_case_inputs
       logical :: of_structure = .false.
       !> Index of the number in a list; 0: no list
       integer :: element = 0
-   end type quantity_t
+   end type input_key_t
 
    !> Whether two sets of inputs, or settings, are the same
    interface is_same
@@ -133,7 +126,7 @@ contains
    !> Set a number
    pure subroutine put(self, quantity, value)
       class(inputs_t), intent(inout) :: self
-      type(quantity_t), intent(in) :: quantity
+      type(input_key_t), intent(in) :: quantity
       !> In the unit of the key; NaN: not given
       real(wp), intent(in) :: value
 
@@ -165,14 +158,6 @@ contains
          self%radius = 0.5_wp*value
       case ('mass')
          self%mass = value
-      case ('half_angle')
-         self%half_angle = value
-      case ('punch_radius')
-         self%punch_radius = value
-      case ('profile_coefficient')
-         self%profile_coefficient = value
-      case ('profile_power')
-         self%profile_power = value
       case ('half_thickness')
          self%half_thickness = positive_or_zero(value)
       case ('thickness')
@@ -190,14 +175,14 @@ contains
       case ('volterra_coefficient')
          self%settings%second_coefficient = value
       case default
-         continue
+         where (shape_parameters%parameter%name == quantity%key) self%shape_numbers = value
       end select
    end subroutine put
 
    !> Set a number of the structure
    pure subroutine put_target(self, quantity, value)
       class(target_inputs_t), intent(inout) :: self
-      type(quantity_t), intent(in) :: quantity
+      type(input_key_t), intent(in) :: quantity
       !> In the unit of the key
       real(wp), intent(in) :: value
 
@@ -232,7 +217,7 @@ contains
       type(inputs_t), intent(inout) :: self
       !> of_sphere, of_plate or of_target
       integer, intent(in) :: body
-      type(quantity_t), intent(in) :: quantity
+      type(input_key_t), intent(in) :: quantity
       real(wp), intent(in) :: value
 
       real(wp), allocatable :: list(:)
@@ -315,7 +300,7 @@ contains
          [b%time_step, b%end_time, b%accuracy, b%second_coefficient])) &
          .and. a%method == b%method .and. a%scheme == b%scheme .and. a%form == b%form &
          .and. a%quadrature == b%quadrature .and. (a%ghost .eqv. b%ghost) &
-         .and. (a%first_contact .eqv. b%first_contact)
+         .and. (a%first_contact .eqv. b%first_contact) .and. a%bounces == b%bounces
    end function same_settings
 
    !> A positive number; 0 if there is none

@@ -5,8 +5,8 @@ module vcor_case_mechanics
    use vcor_case_catalogue, only : find_group
    use vcor_kinds, only : wp
    use vcor_solver_features, only : features, method_for, method_in_use, of_body, of_boltzmann, &
-      of_eq1, of_frozen_plate, of_ghost, of_gravity, of_hereditary_plate, of_layer, &
-      of_paper_scheme, of_receding, of_second_term, of_structure, of_thin_plate
+      of_bounces, of_eq1, of_frozen_plate, of_ghost, of_gravity, of_hereditary_plate, of_layer, &
+      of_paper_scheme, of_receding, of_relaxing_plate, of_second_term, of_structure, of_thin_plate
    implicit none
    private
 
@@ -23,9 +23,10 @@ contains
 
       real(wp) :: gravity
       character(len=:), allocatable :: base, law, pair, scheme, waves
-      integer :: order
+      integer :: bounces, order
 
       call case%get('plate', 'base', base)
+      call case%get('impact', 'bounces', bounces)
       call case%get('plate', 'waves', waves)
       call case%get('contact', 'law', law)
       call case%get('contact', 'pair', pair)
@@ -34,6 +35,7 @@ contains
       has = .false.
       call case%get('solver', 'continue_after_separation', has(of_ghost))
       has(of_second_term) = order == 2
+      has(of_bounces) = bounces > 1
       has(of_paper_scheme) = scheme /= 'product'
       has(of_boltzmann) = law == 'boltzmann'
       has(of_receding) = law == 'receding'
@@ -46,6 +48,7 @@ contains
       has(of_body) = waves == 'body'
       has(of_hereditary_plate) = waves == 'hereditary'
       has(of_frozen_plate) = waves == 'frozen'
+      has(of_relaxing_plate) = waves == 'relaxing'
       has(of_thin_plate) = waves /= 'none' .and. .not. has(of_body)
       has(of_layer) = base /= 'free'
    end function features_of_case

@@ -9,10 +9,10 @@ module vcor_case_namelist
    implicit none
    private
 
-   public :: namelist_t, statement_t, value_t, new_namelist, values_in
+   public :: namelist_t, statement_t, literal_t, new_namelist, values_in
 
    !> One value of a statement
-   type :: value_t
+   type :: literal_t
       !> First byte in the text, without repeat count
       integer :: first = 1
       !> Last byte in the text
@@ -21,7 +21,7 @@ module vcor_case_namelist
       integer :: repeats = 1
       !> Whether it is in quotes
       logical :: in_quotes = .false.
-   end type value_t
+   end type literal_t
 
    !> One statement, `key = values` or `key(section) = values`
    type :: statement_t
@@ -32,7 +32,7 @@ module vcor_case_namelist
       !> Line of the key
       integer :: line = 0
       !> The values, shape (n), n >= 1
-      type(value_t), allocatable :: values(:)
+      type(literal_t), allocatable :: values(:)
    end type statement_t
 
    !> A token
@@ -336,7 +336,7 @@ contains
    pure subroutine values_in(text, values, message)
       character(len=*), intent(in) :: text
       !> The values, shape (n)
-      type(value_t), allocatable, intent(out) :: values(:)
+      type(literal_t), allocatable, intent(out) :: values(:)
       !> Message; empty on success, and without values if there is anything else
       character(len=:), allocatable, intent(out) :: message
 
@@ -353,7 +353,7 @@ contains
       !> The namelists; on return the next token is the one after the values
       class(namelist_t), intent(inout) :: self
       !> The values, shape (n), n >= 0
-      type(value_t), allocatable, intent(out) :: values(:)
+      type(literal_t), allocatable, intent(out) :: values(:)
       !> Line of the error
       integer, intent(out) :: line
       !> Message on failure, empty on success
@@ -387,7 +387,7 @@ contains
                      //'text)'
                end if
                n = n + 1
-               values(n) = value_t(token%first, token%last, in_quotes=token%kind == "'")
+               values(n) = literal_t(token%first, token%last, in_quotes=token%kind == "'")
                if (token%kind == 'w') call split_repeats(self%text, values(n))
                if (values(n)%last < values(n)%first) &
                   message = 'found a repeat count without a value'
@@ -422,7 +422,7 @@ contains
    pure subroutine split_repeats(text, value)
       character(len=*), intent(in) :: text
       !> The value; on return `first` is after the count
-      type(value_t), intent(inout) :: value
+      type(literal_t), intent(inout) :: value
 
       integer, parameter :: most_digits = 9
       integer :: star

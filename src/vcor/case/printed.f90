@@ -3,7 +3,8 @@ module vcor_case_printed
    use vcor_kinds, only : wp
    use vcor_case_catalogue, only : catalogue, first_row, groups, integer_key, key_row, key_t, &
       last_row, list_key, logical_key, real_key, row_for_model
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_number, only : real_text
    use vcor_text, only : buffer_t, integer_text, quoted
    implicit none

@@ -19,19 +19,18 @@ module vcor_case_problem
    use vcor_case_case, only : case_t
    use vcor_case_cause, only : explain
    use vcor_case_inputs, only : inputs_t, is_same, of_plate, of_sphere, of_target, &
-      positive_or_zero, shape_cone, shape_power, shape_punch, shape_sphere, shape_true_sphere, &
-      target_beam, target_block, target_none, target_plate, waves_body
+      positive_or_zero, target_beam, target_block, target_none, target_plate, waves_body
    use vcor_case_structure, only : build_structure, highest_of_list
    use vcor_case_reader, only : read_inputs
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus
    use vcor_impact_outcome, only : none, outcome_t
-   use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law, profile_factor, &
-      punch_factor, sphere_factor
+   use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_face, only : base_free, base_half_space, face_t, new_face
    use vcor_impact_layer_law, only : layer_t, lay, profile_t
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_shape, only : describe_shape, shape_sphere, shape_true_sphere
    use vcor_impact_structure, only : structure_t
    use vcor_impact_target, only : new_plate, waves_none
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
@@ -110,6 +109,8 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(layer_t) :: layer
+      type(profile_t) :: profile
       real(wp) :: mass, factor
       logical :: is_new(3)
 
@@ -134,9 +135,11 @@ contains
          error%item = inputs%item(of_sphere)
          return
       end if
-      call set_shape(self, inputs, factor, error)
+      call set_shape(self, inputs, layer, profile, factor, error)
       if (.not. allocated(error)) call self%impact%launch(inputs%approach_velocity(), mass, &
          factor, error, positive_or_zero(inputs%gravity))
+      if (.not. allocated(error)) call lay(self%impact%law, layer, profile, factor, error, &
+         deepest_of(self%impact, inputs))
       if (.not. allocated(error)) call set_structure(self, inputs, error)
       if (allocated(error)) return
       call set_surroundings(self, inputs)
@@ -253,22 +256,39 @@ contains
          2.0_wp*inputs%half_thickness, has_waves, error)
    end subroutine build_face
 
-   !> Set the contact law of the shape of the striking body
-   subroutine set_shape(self, inputs, factor, error)
+   !> Indentation up to which the contact law is needed
+   pure function deepest_of(impact, inputs) result(s)
+      !> The impact, launched
+      type(impact_t), intent(in) :: impact
+      type(inputs_t), intent(in) :: inputs
+      !> Indentation [m]; huge: no bound is known
+      real(wp) :: s
+
+      s = huge(1.0_wp)
+      ! what moves may be struck again, and the motion after separation has no bound
+      if (inputs%target%body /= target_none .or. inputs%settings%ghost) return
+      ! the force of a second term may be less
+      if (.not. abs(inputs%settings%second_coefficient) > 0.0_wp) s = impact%deepest()
+   end function deepest_of
+
+   !> Set the power of the contact law of the shape of the striking body, and describe what it is
+   !> further
+   subroutine set_shape(self, inputs, layer, profile, factor, error)
+      !> The problem, its materials built
       type(problem_t), intent(inout) :: self
       type(inputs_t), intent(in) :: inputs
+      !> What the body presses, and its profile
+      type(layer_t), intent(out) :: layer
+      type(profile_t), intent(out) :: profile
       !> Factor K of the shape [m^(2-n)]
       real(wp), intent(out) :: factor
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(contact_law_t) :: law
-      type(layer_t) :: layer
-      type(profile_t) :: profile
       real(wp) :: exponent
 
       factor = 0.0_wp
-      exponent = law%start_exponent
       ! a sweep may pass from a second sphere to a seat
       if (inputs%waves_are_chosen .and. (inputs%surface_radius > 0.0_wp &
           .eqv. inputs%waves == waves_body)) then
@@ -284,19 +304,8 @@ contains
             about='surface_radius base')
          if (allocated(error)) return
       end if
-      select case (inputs%shape)
-      case (shape_cone)
-         exponent = 2.0_wp
-         factor = cone_factor(inputs%half_angle)
-      case (shape_punch)
-         exponent = 1.0_wp
-         factor = punch_factor(inputs%punch_radius)
-      case (shape_power)
-         exponent = 1.0_wp + 1.0_wp/inputs%profile_power
-         factor = profile_factor(inputs%profile_coefficient, inputs%profile_power)
-      case default
-         call sphere_factor(inputs%radius, inputs%surface_radius, factor, error)
-      end select
+      call describe_shape(inputs%shape, inputs%radius, inputs%surface_radius, &
+         inputs%shape_numbers, exponent, factor, error)
       if (.not. allocated(error)) call new_contact_law(law, exponent, inputs%receding, error)
       if (.not. allocated(error)) call describe_layer(self, inputs, layer, error)
       if (allocated(error)) return
@@ -311,7 +320,6 @@ contains
       profile%power = 0.0_wp
       if (exponent > 1.0_wp) profile%power = 1.0_wp/(exponent - 1.0_wp)
       if (inputs%shape == shape_true_sphere) profile%radius = inputs%radius
-      call lay(self%impact%law, layer, profile, factor, error)
    end subroutine set_shape
 
    !> Layer on a base, for the contact law: a half space if there is none, or its waves are solved

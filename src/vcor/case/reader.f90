@@ -7,11 +7,11 @@
 module vcor_case_reader
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_body, only : read_material
-   use vcor_case_case, only : address_t, case_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group
-   use vcor_case_inputs, only : inputs_t, of_plate, of_sphere, of_target, quantity_t, shape_cone, &
-      shape_power, shape_punch, shape_sphere, shape_true_sphere, target_beam, target_block, &
-      target_modes, target_none, target_plate, target_rod, waves_body
+   use vcor_case_entries, only : address_t
+   use vcor_case_inputs, only : input_key_t, inputs_t, of_plate, of_sphere, of_target, &
+      target_beam, target_block, target_modes, target_none, target_plate, target_rod, waves_body
    use vcor_case_mechanics, only : features_of_case, place_of_method, why_no_pair
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_input, error_t, raise
@@ -19,6 +19,7 @@ module vcor_case_reader
       support_supported
    use vcor_impact_contact, only : pair_eq1, pair_series
    use vcor_impact_face, only : base_bonded, base_free, base_sliding
+   use vcor_impact_shape, only : find_shape, shape_parameters, shapes
    use vcor_impact_target, only : waves_constant, waves_frozen, waves_hereditary, waves_none, &
       waves_relaxing
    use vcor_kinds, only : wp
@@ -29,10 +30,6 @@ module vcor_case_reader
    public :: read_inputs, quantity_at, waves_of
 
    !> Words of a key and what they mean
-   character(len=*), parameter :: shape_names(*) = [character(len=11) :: 'sphere', 'true_sphere', &
-      'cone', 'punch', 'power']
-   integer, parameter :: shapes(*) = [shape_sphere, shape_true_sphere, shape_cone, shape_punch, &
-      shape_power]
    character(len=*), parameter :: wave_names(*) = [character(len=10) :: 'none', 'constant', &
       'relaxing', 'frozen', 'hereditary', 'body']
    integer, parameter :: waves(*) = [waves_none, waves_constant, waves_relaxing, waves_frozen, &
@@ -92,24 +89,18 @@ contains
 
       character(len=:), allocatable :: text
       type(address_t) :: density
+      integer :: i
 
       call take(case, inputs, reading, 'impact', 'velocity')
       call take(case, inputs, reading, 'impact', 'drop_height')
       call reading%get(case, 'sphere', 'shape', text)
-      inputs%shape = shapes(findloc(shape_names == text, .true., dim=1))
+      inputs%shape = find_shape(text)
       call take(case, inputs, reading, 'sphere', 'radius')
       if (ieee_is_nan(inputs%radius)) call take(case, inputs, reading, 'sphere', 'diameter')
-      select case (inputs%shape)
-      case (shape_cone)
-         call take(case, inputs, reading, 'sphere', 'half_angle')
-      case (shape_punch)
-         call take(case, inputs, reading, 'sphere', 'punch_radius')
-      case (shape_power)
-         call take(case, inputs, reading, 'sphere', 'profile_coefficient')
-         call take(case, inputs, reading, 'sphere', 'profile_power')
-      case default
-         continue
-      end select
+      do i = 1, size(shape_parameters)
+         if (shape_parameters(i)%shape == text) call take(case, inputs, reading, 'sphere', &
+            trim(shape_parameters(i)%parameter%name))
+      end do
       call take(case, inputs, reading, 'sphere', 'mass')
       density = case%address('material', 'density', inputs%item(of_sphere))
       if (case%given('sphere', 'mass')) then
@@ -241,7 +232,7 @@ contains
 
       call case%get('contact', 'law', text)
       inputs%receding = text == 'receding'
-      if (inputs%shape == shape_punch) then
+      if (.not. shapes(inputs%shape)%recedes) then
          ! a user who requests it gets an error
          inputs%receding = inputs%receding .and. case%given('contact', 'law')
          call reading%leave(case%address('contact', 'law'), &
@@ -293,6 +284,8 @@ contains
          settings%quadrature = text
          has = features_of_case(case)
          settings%ghost = has(of_ghost)
+         call case%get('impact', 'bounces', settings%bounces)
+         call reading%mark(case%address('impact', 'bounces'))
       end associate
       ! they count whether the method reads them or not: it refuses what it cannot take
       call put(case, inputs, 'impact', 'gravity')
@@ -335,7 +328,7 @@ contains
       !> Body of the material; absent: not of a material
       integer, intent(in), optional :: body
 
-      type(quantity_t) :: quantity
+      type(input_key_t) :: quantity
       real(wp) :: number
       integer :: item
 
@@ -355,7 +348,7 @@ contains
       type(address_t), intent(in) :: address
       !> The inputs of its case
       type(inputs_t), intent(in) :: inputs
-      type(quantity_t) :: quantity
+      type(input_key_t) :: quantity
 
       quantity%key = catalogue(address%row)%name
       quantity%element = address%element

@@ -5,8 +5,9 @@
 !> be mistaken for an answer. Where a value is left out, the code that leaves it out may state why.
 module vcor_case_reading
    use vcor_case_address, only : swept_addresses
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, last_row
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, shortened

@@ -1,9 +1,9 @@
 !> Conversion of written values to the kind of a key, and the check of their ranges
 module vcor_case_values
-   use vcor_case_case, only : entry_t
    use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, text_key, &
       wanted
-   use vcor_case_namelist, only : value_t, values_in
+   use vcor_case_entries, only : entry_t
+   use vcor_case_namelist, only : literal_t, values_in
    use vcor_number, only : contains_number, is_computable, looks_numeric, read_real, real_text
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, lower, quoted, shortened, text_flaw
@@ -32,7 +32,7 @@ contains
       !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
-      type(value_t), allocatable :: values(:)
+      type(literal_t), allocatable :: values(:)
       character(len=:), allocatable :: quotes
 
       quotes = text
@@ -49,7 +49,7 @@ contains
       !> Text with the values
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
-      type(value_t), intent(in) :: values(:)
+      type(literal_t), intent(in) :: values(:)
       !> Entry to set
       type(entry_t), intent(inout) :: entry
       !> Message on failure, unallocated on success
@@ -101,7 +101,7 @@ contains
       !> Text with the values
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
-      type(value_t), intent(in) :: values(:)
+      type(literal_t), intent(in) :: values(:)
       !> The numbers, shape (sum of the repeat counts)
       real(wp), allocatable, intent(inout) :: list(:)
       !> Message on failure, unallocated on success
@@ -210,7 +210,7 @@ contains
       !> Text with the values
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
-      type(value_t), intent(in) :: values(:)
+      type(literal_t), intent(in) :: values(:)
       character(len=:), allocatable :: message
 
       integer, parameter :: most_shown = 8

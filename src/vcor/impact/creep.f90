@@ -20,7 +20,7 @@ module vcor_impact_creep
    implicit none
    private
 
-   public :: split_modes, split_rest, rest_damping
+   public :: split_modes, split_rest, rest_damping, in_order, spectrum_t
 
    !> Butterworth's D(u) = 1 + d_1 u + d_2 u^2 + d_1 u^3 + u^4: d_1 = 2 cos(pi/8) + 2 cos(3 pi/8)
    !> and d_2 = 2 + sqrt(2)

@@ -41,6 +41,7 @@ module vcor_impact_face
       procedure :: is_built
       procedure :: has_response
       procedure :: local_compliance
+      procedure :: is_viscous
       procedure :: plate_modulus
       procedure :: drift
       procedure :: per_shear_speed
@@ -133,6 +134,17 @@ contains
       if (allocated(self%striker)) compliance = compliance &
          + 1.0_wp/(self%striker%plane_strain_factor()*self%striker%complex_modulus(s))
    end function local_compliance
+
+   !> Whether a body has a dashpot in parallel: the pressure ends with a step at the edge of a
+   !> contact that grows
+   elemental function is_viscous(self)
+      class(face_t), intent(in) :: self
+      logical :: is_viscous
+
+      is_viscous = .false.
+      if (allocated(self%plate)) is_viscous = self%plate%viscosity > 0.0_wp
+      if (allocated(self%striker)) is_viscous = is_viscous .or. self%striker%viscosity > 0.0_wp
+   end function is_viscous
 
    !> Compliance c(s) of what moves as a whole: of a thin plate by its bending waves, of a structure
    elemental function drift(self, s) result(compliance)

@@ -50,9 +50,11 @@ module vcor_impact_law
       !> while the contact shrinks, too (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
       !> doi:10.1115/1.3625192)
       logical :: receding = .false.
-      !> Ratio of u to s^n; unallocated: 1
-      type(law_table_t), allocatable, private :: table
-      !> Numbers that the table is for, the first one its base
+      !> Ratio of u to s^n, up to several contact radii, those that were needed
+      type(law_table_t), allocatable, private :: table(:)
+      !> Which of them is in use; 0: none, the ratio is 1
+      integer, private :: level = 0
+      !> Numbers that the tables are for, the first one the base
       real(wp), private :: about(6) = 0.0_wp
       !> Unit of length of the table [m], and half-space contact radius in it divided by s^(n-1)
       !> [m^(1-n)]
@@ -66,10 +68,11 @@ module vcor_impact_law
       procedure, non_overridable :: evaluate
       procedure, non_overridable :: inverse
       procedure, non_overridable :: radius
+      procedure, non_overridable :: half_space_radius
       procedure, non_overridable :: profile
       procedure, non_overridable :: solve
       procedure, non_overridable :: time_scale
-      procedure, non_overridable :: is_about
+      procedure, non_overridable :: has
       procedure, non_overridable :: is_of_layer
       procedure, non_overridable :: adopt
       procedure, non_overridable :: resize
@@ -174,14 +177,17 @@ contains
    end function profile_factor
 
    !> Whether the law has a table for given numbers
-   pure function is_about(self, about)
+   pure function has(self, about, level)
       class(contact_law_t), intent(in) :: self
       !> The numbers
       real(wp), intent(in) :: about(6)
-      logical :: is_about
+      !> Which table
+      integer, intent(in) :: level
+      logical :: has
 
-      is_about = allocated(self%table) .and. .not. any(abs(about - self%about) > 0.0_wp)
-   end function is_about
+      has = allocated(self%table) .and. .not. any(abs(about - self%about) > 0.0_wp)
+      if (has) has = self%table(level)%reach > 0.0_wp
+   end function has
 
    !> Whether the law is that of a layer on a base
    pure function is_of_layer(self)
@@ -189,23 +195,31 @@ contains
       logical :: is_of_layer
 
       ! the first number is the base, 0 for a half space
-      is_of_layer = allocated(self%table) .and. self%about(1) > 0.0_wp
+      is_of_layer = self%level > 0 .and. self%about(1) > 0.0_wp
    end function is_of_layer
 
-   !> Take a table; `resize` sets its unit
-   pure subroutine adopt(self, table, about)
+   !> Take a table, and forget those for other numbers
+   pure subroutine adopt(self, table, about, level, levels)
       class(contact_law_t), intent(inout) :: self
       type(law_table_t), intent(in) :: table
       !> Numbers that it is for
       real(wp), intent(in) :: about(6)
+      !> Which one it is, and how many there may be
+      integer, intent(in) :: level, levels
 
-      self%table = table
+      if (allocated(self%table)) then
+         if (any(abs(about - self%about) > 0.0_wp)) deallocate (self%table)
+      end if
+      if (.not. allocated(self%table)) allocate (self%table(levels))
+      self%table(level) = table
       self%about = about
    end subroutine adopt
 
-   !> Set the size of what the table describes
-   pure subroutine resize(self, factor, length, sphere)
+   !> Use a table, and set the size of what it describes
+   pure subroutine resize(self, level, factor, length, sphere)
       class(contact_law_t), intent(inout) :: self
+      !> Which table
+      integer, intent(in) :: level
       !> Factor K of the shape [m^(2-n)]
       real(wp), intent(in) :: factor
       !> Unit of length of the table [m]
@@ -213,8 +227,9 @@ contains
       !> Radius of a true sphere [m]; 0: another body
       real(wp), intent(in) :: sphere
 
+      self%level = level
       self%length = length
-      self%scale = 0.5_wp*factor*self%start_exponent/length
+      self%scale = self%half_space_radius(factor, 1.0_wp)/length
       self%sphere = sphere
    end subroutine resize
 
@@ -279,9 +294,9 @@ contains
          secant = sqrt(abs(s))
       end if
       slope = self%start_exponent*secant
-      if (.not. allocated(self%table)) return
+      if (self%level == 0) return
       do i = 1, n
-         call self%table%stiffening(self%scale*secant(i), ratio, rise)
+         call self%table(self%level)%stiffening(self%scale*secant(i), ratio, rise)
          slope(i) = slope(i)*ratio + (self%start_exponent - 1.0_wp)*secant(i)*rise
          secant(i) = secant(i)*ratio
       end do
@@ -299,7 +314,7 @@ contains
       integer :: iteration
 
       s = u**(1.0_wp/self%start_exponent)
-      if (.not. (allocated(self%table) .and. s > 0.0_wp)) return
+      if (.not. (self%level > 0 .and. s > 0.0_wp)) return
       ! Newton's method for the logarithms, in which u is nearly a straight line
       do iteration = 1, most_iterations
          call self%evaluate(1, [s], secant, slope)
@@ -322,13 +337,26 @@ contains
 
       real(wp) :: x
 
-      if (allocated(self%table)) then
+      if (self%level > 0) then
          x = self%scale*abs(s)**(self%start_exponent - 1.0_wp)
-         radius = self%length*x*self%table%widening(x)
+         radius = self%length*x*self%table(self%level)%widening(x)
       else
          radius = 0.5_wp*factor*self%slope(s)
       end if
    end function radius
+
+   !> Contact radius on a half space, K n s^(n-1)/2
+   elemental function half_space_radius(self, factor, s) result(radius)
+      class(contact_law_t), intent(in) :: self
+      !> Factor K of the shape [m^(2-n)]
+      real(wp), intent(in) :: factor
+      !> Indentation [m], >= 0
+      real(wp), intent(in) :: s
+      !> Radius [m]
+      real(wp) :: radius
+
+      radius = 0.5_wp*factor*self%start_exponent*s**(self%start_exponent - 1.0_wp)
+   end function half_space_radius
 
    !> Force divided by that on a half space at the same indentation, if the law is that of a layer
    pure function stiffening(self, s) result(ratio)
@@ -342,8 +370,9 @@ contains
       integer :: iteration
 
       ratio = 1.0_wp
-      if (.not. allocated(self%table)) return
-      call self%table%stiffening(self%scale*s**(self%start_exponent - 1.0_wp), ratio, rise)
+      if (self%level == 0) return
+      call self%table(self%level)%stiffening( &
+         self%scale*s**(self%start_exponent - 1.0_wp), ratio, rise)
       if (.not. self%sphere > 0.0_wp) return
       ! on a half space s = a x and F/E' = (R^2 + a^2) x - R a with x = atanh(a/R)
       x = sqrt(s/self%sphere)
@@ -362,10 +391,10 @@ contains
       real(wp) :: s
 
       s = huge(1.0_wp)
-      if (.not. allocated(self%table)) return
+      if (self%level == 0) return
       if (self%start_exponent > 1.0_wp) then
-         s = (self%table%reach/self%scale)**(1.0_wp/(self%start_exponent - 1.0_wp))
-      else if (self%scale > self%table%reach) then
+         s = (self%table(self%level)%reach/self%scale)**(1.0_wp/(self%start_exponent - 1.0_wp))
+      else if (self%scale > self%table(self%level)%reach) then
          s = 0.0_wp
       end if
    end function deepest
@@ -419,7 +448,7 @@ contains
       if (abs(guess) > 0.0_wp) y = min(y, max(sqrt(abs(guess)), least_guess*y))
       do iteration = 1, most_iterations
          s = y*y
-         if (allocated(self%table) .or. abs(self%start_exponent - hertz) > 0.0_wp) then
+         if (self%level > 0 .or. abs(self%start_exponent - hertz) > 0.0_wp) then
             call self%evaluate(1, [s], secant, slope)
          else
             secant = y
@@ -453,7 +482,7 @@ contains
 
       time = (mass/(firmness*velocity**(self%start_exponent - 1.0_wp))) &
          **(1.0_wp/(self%start_exponent + 1.0_wp))
-      if (.not. allocated(self%table)) return
+      if (self%level == 0) return
       ! the energy m v0^2/2 = k int u ds, and int u ds of this power
       s = self%depth*velocity*time
       do iteration = 1, most_iterations

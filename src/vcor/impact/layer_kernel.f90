@@ -43,7 +43,8 @@ contains
       real(wp), parameter :: last = 20.0_wp, phase = 9.0_wp
       integer, parameter :: order = 16
       real(wp) :: node(order), weight(order), point(terms), u(terms), value(terms)
-      real(wp) :: matrix(terms, terms), start, width, k, share
+      real(wp) :: matrix(terms, terms), start, width, step, k
+      complex(wp) :: wave(terms), turn(terms)
       integer :: panels, parts, i, j, part
 
       call gauss_nodes(node, weight)
@@ -55,15 +56,19 @@ contains
          call place(i, start, width)
          u = start + 0.5_wp*width*(1.0_wp + point)
          parts = ceiling(last*max(1.0_wp, (start + width)/phase))
+         step = last/real(parts, wp)
          value = 0.0_wp
-         do part = 1, parts
-            do j = 1, order
-               k = last/real(parts, wp)*(real(part - 1, wp) + node(j))
-               share = weight(j)*static_response(base, poisson_ratio, k)
-               value = value + share*cos(k*u)
+         ! from one part to the next exp(i k u) turns by the same angle
+         turn = exp(cmplx(0.0_wp, step*u, wp))
+         do j = 1, order
+            wave = exp(cmplx(0.0_wp, step*node(j)*u, wp))
+            do part = 1, parts
+               k = step*(real(part - 1, wp) + node(j))
+               value = value + weight(j)*static_response(base, poisson_ratio, k)*real(wave, wp)
+               wave = wave*turn
             end do
          end do
-         self%coefficient(:, i) = matmul(matrix, value*(last/(pi*real(parts, wp))))
+         self%coefficient(:, i) = matmul(matrix, value*(step/pi))
       end do
    end subroutine new_layer_kernel
 

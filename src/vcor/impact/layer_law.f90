@@ -66,10 +66,9 @@ module vcor_impact_layer_law
    !> Nodes of the first panel, on which x is a cube, so that powers are smooth, and of all others,
    !> which are one unit wide
    integer, parameter :: first_nodes = 24, nodes = 8
-   !> Panels of the contact radius on which the law is a polynomial, and its number of points: next
-   !> to a = 0 the singularities are at a distance of 1, elsewhere of more than a
-   real(wp), parameter :: edges(*) = [0.0_wp, 0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp, 16.0_wp, &
-      widest]
+   !> Ends of panels of the contact radius on which the law is a polynomial, and its number of
+   !> points: next to a = 0 the singularities are at a distance of 1, elsewhere of more than a
+   real(wp), parameter :: edges(*) = [0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp, 16.0_wp]
    integer, parameter :: points = 16
 
    !> Discretised equation for all contact radii up to the largest one
@@ -145,8 +144,8 @@ contains
    end function area
 
    !> Give a contact law the table of a body on a layer, or of a true sphere on a half space; other
-   !> bodies on a half space need none. A table is kept as long as it holds
-   subroutine lay(law, layer, profile, factor, error)
+   !> bodies on a half space need none. Tables are kept as long as they hold
+   subroutine lay(law, layer, profile, factor, error, deepest_needed)
       !> Law of the body's power
       type(contact_law_t), intent(inout) :: law
       !> The layer, in m
@@ -157,11 +156,16 @@ contains
       real(wp), intent(in) :: factor
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Indentation up to which the law will be asked for [m], since the time that a table takes
+      !> grows with it; absent, huge or of a true sphere: as far as tables reach
+      real(wp), intent(in), optional :: deepest_needed
 
       type(layer_t) :: unit_layer
       type(profile_t) :: unit_profile
       type(law_table_t) :: table
       real(wp) :: length, about(6)
+      real(wp), allocatable :: ends(:)
+      integer :: level
 
       unit_layer = layer
       unit_profile = profile
@@ -177,47 +181,75 @@ contains
       unit_profile%radius = profile%radius/length
       about = [real(unit_layer%base, wp), unit_layer%poisson_ratio, unit_layer%share, &
          unit_layer%thickness, unit_profile%power, unit_profile%radius]
-      if (.not. law%is_about(about)) then
-         call tabulate(table, unit_layer, unit_profile, error)
-         if (allocated(error)) return
-         call law%adopt(table, about)
+      ends = panels_to(unit_layer, unit_profile)
+      level = size(ends)
+      if (present(deepest_needed)) then
+         ! the contact is wider than on a half space
+         if (deepest_needed < huge(1.0_wp) .and. .not. profile%radius > 0.0_wp) level = min(level, &
+            1 + count(ends < law%half_space_radius(factor, deepest_needed)/length))
       end if
-      call law%resize(factor, length, profile%radius)
+      do
+         if (.not. law%has(about, level)) then
+            call tabulate(table, unit_layer, unit_profile, ends(:level), error)
+            if (allocated(error)) return
+            call law%adopt(table, about, level, size(ends))
+         end if
+         call law%resize(level, factor, length, profile%radius)
+         if (level == size(ends)) exit
+         if (law%deepest() >= deepest_needed) exit
+         level = level + 1
+      end do
    end subroutine lay
 
-   !> Tabulate the law: f is the ratio of the force to that on a half space at the same indentation,
-   !> where the contact radius is x = s^(1/p), and g the contact radius divided by x
-   subroutine tabulate(table, layer, profile, error)
-      type(law_table_t), intent(out) :: table
+   !> Ends of the panels of the contact radius on which the law is a polynomial, from the second one
+   pure function panels_to(layer, profile) result(ends)
+      !> Layer and body in units of the table
       type(layer_t), intent(in) :: layer
       type(profile_t), intent(in) :: profile
-      type(error_t), allocatable, intent(out) :: error
+      !> Ends [-], shape (panels)
+      real(wp), allocatable :: ends(:)
 
-      type(equation_t) :: equation
-      real(wp) :: point(points), matrix(points, points), value(points, 2), largest, a
-      real(wp), allocatable :: piece(:, :, :), ends(:)
-      integer :: i, j
+      real(wp) :: largest
 
       largest = widest*layer%thickness
       if (layer%base == base_half_space) largest = huge(1.0_wp)
       if (profile%radius > 0.0_wp) largest = min(largest, deepest*profile%radius)
+      ends = [pack(edges, edges < largest), largest]
+   end function panels_to
+
+   !> Tabulate the law: f is the ratio of the force to that on a half space at the same indentation,
+   !> where the contact radius is x = s^(1/p), and g the contact radius divided by x
+   subroutine tabulate(table, layer, profile, ends, error)
+      type(law_table_t), intent(out) :: table
+      type(layer_t), intent(in) :: layer
+      type(profile_t), intent(in) :: profile
+      !> Ends of the panels of the contact radius [-], shape (m)
+      real(wp), intent(in) :: ends(:)
+      type(error_t), allocatable, intent(out) :: error
+
+      type(equation_t) :: equation
+      real(wp) :: point(points), matrix(points, points), value(points, 2), start, a
+      real(wp), allocatable :: piece(:, :, :)
+      integer :: i, j
+
       equation%layer = layer
       equation%profile = profile
-      call equation%build(largest, error)
+      call equation%build(ends(size(ends)), error)
       if (allocated(error)) return
       point = chebyshev_points(points)
       matrix = coefficients_of(points)
-      ends = [pack(edges, edges < largest), largest]
-      allocate (piece(points, 2, size(ends) - 1))
-      do i = 1, size(ends) - 1
+      allocate (piece(points, 2, size(ends)))
+      start = 0.0_wp
+      do i = 1, size(ends)
          do j = 1, points
-            a = ends(i) + 0.5_wp*(ends(i + 1) - ends(i))*(1.0_wp + point(j))
+            a = start + 0.5_wp*(ends(i) - start)*(1.0_wp + point(j))
             call equation%press(a, value(j, 1), value(j, 2), error)
             if (allocated(error)) return
          end do
          piece(:, :, i) = matmul(matrix, value)
+         start = ends(i)
       end do
-      call resample(table, equation, ends, piece)
+      call resample(table, equation, [0.0_wp, ends], piece)
    end subroutine tabulate
 
    !> Resample the law from equal parts of the contact radius to those of the indentation
@@ -395,7 +427,7 @@ contains
       allocate (border(n, m + 1), corner(m + 1, m + 1), more(m + 1, 2))
       do i = 1, m + 1
          border(:, i) = self%coupling(self%x(:n), self%root(:n), x(i), root(i))
-         corner(:, i) = self%coupling(x, root, x(i), root(i))
+         corner(i:, i) = self%coupling(x(i:), root(i:), x(i), root(i))
          if (i <= m) corner(i, i) = corner(i, i) + 1.0_wp
       end do
       more(:, 1) = root
@@ -404,7 +436,9 @@ contains
       info = 0
       if (n > 0) then
          call dtrtrs('L', 'N', 'N', n, m + 1, self%factor, size(self%factor, 1), border, n, info)
-         corner = corner - matmul(transpose(border), border)
+         do i = 1, m + 1
+            corner(i:, i) = corner(i:, i) - matmul(border(:, i), border(:, i:))
+         end do
          more = more - matmul(transpose(border), self%known(:n, :))
          sums = matmul(self%known(:n, 1), self%known(:n, :))
       end if

@@ -2,6 +2,7 @@
 module vcor_impact_outcome
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
+   use vcor_impact_bounces, only : bounce_t, bounces_t, ends_count, ends_none, ends_rest
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
@@ -10,7 +11,7 @@ module vcor_impact_outcome
    implicit none
    private
 
-   public :: outcome_t, evaluate, none
+   public :: outcome_t, evaluate, bounces_of, none
 
    !> Quiet NaN for a quantity that does not exist, by its bits: ieee_value is not constant
    real(wp), parameter :: none = transfer(9221120237041090560_int64, 1.0_wp)
@@ -60,6 +61,14 @@ module vcor_impact_outcome
       integer :: contacts = 0
       !> Time of the last separation [s]
       real(wp) :: last_separation = none
+      !> Number of bounces; 0 without a result
+      integer :: bounces = 0
+      !> Time from first touch to the end of the last bounce, or to the touch after which the sphere
+      !> rests [s], and its estimated error
+      real(wp) :: bouncing_time = none
+      real(wp) :: bouncing_time_error = none
+      !> One of the `ends_*` constants of the bounces
+      integer :: bounces_end = ends_none
       !> Restitution of the sphere at the end of the first contact [-]
       real(wp) :: first_cor_sphere = none
       !> Energy left in the modes of a structure at the last separation [J]; NaN if its material
@@ -135,7 +144,7 @@ module vcor_impact_outcome
       !> Index in `thresholds` of the decisive measure; 0: none
       integer :: validity_cause = 0
    contains
-      procedure :: settle
+      procedure :: come_to_rest
       procedure :: is_finite
       procedure :: misses
       procedure :: gains_energy
@@ -169,7 +178,11 @@ contains
       ! bodies that separate at first touch have no other quantities
       if (.not. outcome%max_indentation > 0.0_wp) return
       outcome%residual_ratio = outcome%residual_indentation/outcome%max_indentation
-      if (outcome%status == contact_resting) return
+      if (outcome%status == contact_resting) then
+         outcome%bouncing_time = 0.0_wp
+         outcome%bounces_end = ends_rest
+         return
+      end if
 
       ! impulse of the force less that of the weight
       outcome%contact_time = trajectory%state(col_time, n)
@@ -183,6 +196,15 @@ contains
          outcome%contacts = trajectory%contacts
          outcome%structure_energy = trajectory%structure_energy
          outcome%first_cor_sphere = -trajectory%first_velocity/impact%velocity
+      end if
+      outcome%bounces = 1
+      outcome%bouncing_time = outcome%last_separation
+      outcome%bounces_end = ends_count
+      if (allocated(trajectory%bounces)) then
+         outcome%bounces = trajectory%bounces%count
+         outcome%bouncing_time = trajectory%bounces%total_time
+         outcome%bouncing_time_error = trajectory%bounces%total_time_error
+         outcome%bounces_end = trajectory%bounces%ending
       end if
       outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
       if (impact%target%structure%exists()) outcome%cor = (trajectory%rigid_velocity &
@@ -221,9 +243,38 @@ contains
       outcome%accuracy = trajectory%accuracy
    end function evaluate
 
+   !> Bounces of an impact: the impact itself if no more were asked for, none of a sphere that stays
+   pure function bounces_of(impact, trajectory, outcome) result(bounces)
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(in) :: trajectory
+      !> Its outcome
+      type(outcome_t), intent(in) :: outcome
+      type(bounces_t) :: bounces
+
+      type(bounce_t) :: bounce
+
+      if (allocated(trajectory%bounces)) then
+         bounces = trajectory%bounces
+         return
+      end if
+      bounces%ending = outcome%bounces_end
+      bounces%total_time = outcome%bouncing_time
+      if (outcome%status /= contact_separated) return
+      bounce%velocity = impact%velocity
+      bounce%cor = outcome%cor_sphere
+      bounce%cor_error = outcome%cor_sphere_error
+      bounce%separation = outcome%last_separation
+      if (impact%gravity > 0.0_wp) bounce%height = 0.5_wp*(outcome%cor_sphere &
+         *impact%velocity)**2/impact%gravity - trajectory%state(col_sphere, trajectory%last)
+      bounce%contacts = outcome%contacts
+      bounce%max_force = outcome%max_force
+      bounce%max_indentation = outcome%max_indentation
+      call bounces%add(bounce)
+   end function bounces_of
+
    !> Take the indentation of a sphere that rests from the balance of spring and weight: the
    !> computation may end while the material still creeps. A fluid keeps its last indentation
-   pure subroutine settle(self, impact)
+   pure subroutine come_to_rest(self, impact)
       !> The outcome of an impact that ended at rest
       class(outcome_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
@@ -233,7 +284,7 @@ contains
          /(impact%factor*impact%modulus%rubbery()))
       self%max_indentation = max(self%max_indentation, self%residual_indentation)
       self%residual_ratio = self%residual_indentation/self%max_indentation
-   end subroutine settle
+   end subroutine come_to_rest
 
    !> Whether all numbers are finite: energies, for example, may overflow
    pure function is_finite(self)

@@ -56,6 +56,7 @@ module vcor_impact_problem
       procedure :: kernel_viscosity
       procedure :: time_scale
       procedure, private :: elastic_time
+      procedure :: deepest
       procedure :: patience
       procedure :: outruns
       procedure :: first_force
@@ -352,6 +353,26 @@ contains
       end do
       time = guess
    end function elastic_time
+
+   !> Indentation that the first contact on a body at rest cannot exceed: as it grows, the force is
+   !> at least k(oo) u, and u at least s^n, since a layer is stiffer than a half space. With the
+   !> energies it is k(oo) s^(n+1)/(n+1) <= m v0^2/2 + m g s. Not of a true sphere, which is softer
+   pure function deepest(self) result(s)
+      class(impact_t), intent(in) :: self
+      !> Indentation [m]; huge if the contact has no equilibrium modulus
+      real(wp) :: s
+
+      real(wp) :: firmness, n
+
+      s = huge(1.0_wp)
+      firmness = self%factor*self%modulus%rubbery()
+      if (.not. firmness > 0.0_wp) return
+      n = self%law%start_exponent
+      s = (0.5_wp*(n + 1.0_wp)*self%mass/firmness*self%velocity**2)**(1.0_wp/(n + 1.0_wp))
+      ! the larger one of two energies is at least half of their sum
+      if (self%gravity > 0.0_wp) s = max(2.0_wp**(1.0_wp/(n + 1.0_wp))*s, &
+         (2.0_wp*(n + 1.0_wp)*self%mass/firmness*self%gravity)**(1.0_wp/n))
+   end function deepest
 
    !> Default time after which a contact counts as lasting: a thousand time scales, with the rubbery
    !> modulus if there is one, and of the sphere on a structure

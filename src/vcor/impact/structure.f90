@@ -93,8 +93,10 @@ module vcor_impact_structure
       !> Error of the sum [-]
       real(wp) :: error = 0.0_wp
    contains
+      procedure :: make_none
       procedure :: at_rest
       procedure :: modes
+      procedure :: after
       procedure :: energy
       procedure :: power_lost
       procedure :: rigid_position
@@ -291,6 +293,14 @@ contains
       vibration%weight = [vibration%weight, weight]
    end subroutine expand
 
+   !> Make it no structure: nothing moves
+   subroutine make_none(self)
+      class(vibration_t), intent(out) :: self
+
+      allocate (self%square(0), self%damping(0), self%yield(0), self%kick(0), self%rate(0), &
+         self%weight(0))
+   end subroutine make_none
+
    !> Number of oscillators each of which is one mode
    pure function modes(self)
       class(vibration_t), intent(in) :: self
@@ -309,6 +319,43 @@ contains
       allocate (state%rate(size(self%square)), source=0.0_wp)
       allocate (state%lag(size(self%rate)), source=0.0_wp)
    end function at_rest
+
+   !> State after a time without force
+   pure function after(self, state, time) result(later)
+      class(vibration_t), intent(in) :: self
+      type(state_of_modes_t), intent(in) :: state
+      !> Time [s], >= 0
+      real(wp), intent(in) :: time
+      type(state_of_modes_t) :: later
+
+      real(wp) :: even, odd, root, half, fall
+      integer :: n
+
+      later = state
+      do n = 1, size(self%square)
+         ! exp(-a t/2) times cos(w t) and sin(w t)/w, w^2 = b - a^2/4, or cosh and sinh
+         associate (b => self%square(n), a => self%damping(n), eta => state%eta(n), &
+                    v => state%rate(n))
+            root = sqrt(abs(b - 0.25_wp*a**2))
+            if (b > 0.25_wp*a**2) then
+               even = exp(-0.5_wp*a*time)*cos(root*time)
+               odd = exp(-0.5_wp*a*time)*sin(root*time)/root
+            else
+               ! the slower of the two rates a/2 -+ w keeps its digits by their product b
+               fall = 0.0_wp
+               if (a > 0.0_wp) fall = exp(-b/(0.5_wp*a + root)*time)
+               if (.not. a > 0.0_wp) fall = 1.0_wp
+               half = tanh(root*time)
+               even = fall/(1.0_wp + half)
+               odd = fall*time
+               if (root*time > 0.0_wp) odd = fall*half/(1.0_wp + half)/root
+            end if
+            later%eta(n) = even*eta + odd*(v + 0.5_wp*a*eta)
+            later%rate(n) = even*v - odd*(b*eta + 0.5_wp*a*v)
+         end associate
+      end do
+      later%lag = exp(-self%rate*time)*state%lag
+   end function after
 
    !> Kinetic and elastic energy of a structure that does not relax, in all modes but the rest
    pure function energy(self, state)

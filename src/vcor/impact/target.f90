@@ -53,6 +53,7 @@ module vcor_impact_target
       procedure :: alpha_after
       procedure :: alpha_rate
       procedure :: frozen
+      procedure :: varies
       procedure :: hereditary
       procedure :: drifts
       procedure :: has_memory
@@ -201,6 +202,14 @@ contains
 
       frozen = self%waves == waves_frozen .and. allocated(self%material)
    end function frozen
+
+   !> Whether alpha changes with the time since first contact
+   elemental function varies(self)
+      class(target_t), intent(in) :: self
+      logical :: varies
+
+      varies = allocated(self%material)
+   end function varies
 
    !> Whether the plate has a memory: U' = alpha F + int psi(t - x) F(x) dx
    elemental function hereditary(self)

@@ -2,6 +2,7 @@
 module vcor_impact_trajectory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_bounces, only : bounces_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : unset, wp
    implicit none
@@ -12,7 +13,7 @@ module vcor_impact_trajectory
    public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
    public :: contact_unknown, contact_separated, contact_lasting, contact_sticking, &
       contact_resting, history_steps
-   public :: refuse_growth
+   public :: refuse_growth, unrest
 
    !> Rows of `state`: time [s]
    integer, parameter :: col_time = 1
@@ -109,6 +110,10 @@ module vcor_impact_trajectory
       real(wp) :: separation(columns) = unset
       !> Work of the force on the contact and on the structure [J], if the solver has summed it up
       real(wp), allocatable :: work(:)
+      !> Time of first touch [s], and the velocity of the sphere then [m/s]
+      real(wp) :: touch(2) = 0.0_wp
+      !> The bounces, if more than one was asked for
+      type(bounces_t), allocatable :: bounces
       !> Number of exponentials that approximate the kernel; 0 if it is used unchanged
       integer :: kernel_terms = 0
       !> Estimated largest relative error of that sum
@@ -124,6 +129,8 @@ module vcor_impact_trajectory
       real(wp), allocatable :: map(:, :)
    contains
       procedure :: reserve
+      procedure :: begin
+      procedure :: add
       procedure :: add_map
       procedure :: stop_at_rest
       procedure :: is_stuck
@@ -158,6 +165,31 @@ contains
          allocate (self%state(columns, 0:nodes), self%share(0:nodes))
       end if
    end subroutine reserve
+
+   !> Store the state at first contact, node 0
+   pure subroutine begin(self, state)
+      class(trajectory_t), intent(inout) :: self
+      real(wp), intent(in) :: state(columns)
+
+      call self%reserve(1)
+      self%final = 0
+      self%state(:, 0) = state
+      self%share(0) = 0.0_wp
+   end subroutine begin
+
+   !> Store the state at the next node
+   pure subroutine add(self, state, share)
+      class(trajectory_t), intent(inout) :: self
+      real(wp), intent(in) :: state(columns)
+      !> Its share in the impulse of the contact [N s]; absent: 0
+      real(wp), intent(in), optional :: share
+
+      call self%reserve(self%final + 1)
+      self%final = self%final + 1
+      self%state(:, self%final) = state
+      self%share(self%final) = 0.0_wp
+      if (present(share)) self%share(self%final) = share
+   end subroutine add
 
    !> Record the map of the next panel
    pure subroutine add_map(self, map)
@@ -258,9 +290,7 @@ contains
 
       ! square of the tolerated deviation of the forces, over the weight
       real(wp), parameter :: negligible = 1.0e-14_wp
-      integer, parameter :: halvings = 50
-      real(wp) :: weight, slope, viscosity, root, excess, spring, stiffness, velocity, tau
-      integer :: i
+      real(wp) :: weight, spring, excess
 
       rests = .false.
       associate (now => self%state(:, self%last))
@@ -269,24 +299,42 @@ contains
          excess = ((now(col_force) - weight)/weight)**2
          if (.not. (is_last .or. excess <= negligible .and. &
              (spring*impact%law%u(now(col_indentation))/weight - 1.0_wp)**2 <= negligible)) return
-         if (.not. (now(col_force) > 0.0_wp .and. now(col_indentation) > 0.0_wp)) return
-         slope = impact%law%slope(now(col_indentation))
-         viscosity = impact%kernel_viscosity()
-         velocity = now(col_velocity) &
-            + impact%target%alpha(now(col_time))*(now(col_force) - weight)
-         if (velocity > 0.0_wp .and. .not. impact%springs_back()) velocity = max(0.0_wp, velocity &
-            - weight/((impact%kernel_integral(now(col_time)) + viscosity)*slope))
-         root = huge(1.0_wp)
-         tau = now(col_time)
-         do i = 1, halvings
-            tau = 0.5_wp*tau
-            stiffness = (impact%kernel_integral(tau) + viscosity)*sqrt(slope/impact%mass)
-            root = min(root, stiffness + sqrt(impact%kernel(2.0_wp*tau)))
-         end do
-         excess = excess + slope*impact%mass*(root*velocity/weight)**2
-         rests = excess < merge(1.0_wp, negligible, is_last)
+         rests = unrest(impact, now) < merge(1.0_wp, negligible, is_last)
       end associate
    end function rests
+
+   !> Square of what the right side above may be over the weight: below 1 the weight keeps the
+   !> sphere in contact
+   pure function unrest(impact, now)
+      type(impact_t), intent(in) :: impact
+      !> State in contact, its time since first touch
+      real(wp), intent(in) :: now(columns)
+      !> The square [-]; huge without contact
+      real(wp) :: unrest
+
+      integer, parameter :: halvings = 50
+      real(wp) :: weight, slope, viscosity, root, stiffness, velocity, tau
+      integer :: i
+
+      unrest = huge(1.0_wp)
+      if (.not. (now(col_force) > 0.0_wp .and. now(col_indentation) > 0.0_wp)) return
+      weight = impact%mass*impact%gravity
+      slope = impact%law%slope(now(col_indentation))
+      viscosity = impact%kernel_viscosity()
+      velocity = now(col_velocity) &
+         + impact%target%alpha(now(col_time))*(now(col_force) - weight)
+      if (velocity > 0.0_wp .and. .not. impact%springs_back()) velocity = max(0.0_wp, velocity &
+         - weight/((impact%kernel_integral(now(col_time)) + viscosity)*slope))
+      root = huge(1.0_wp)
+      tau = now(col_time)
+      do i = 1, halvings
+         tau = 0.5_wp*tau
+         stiffness = (impact%kernel_integral(tau) + viscosity)*sqrt(slope/impact%mass)
+         root = min(root, stiffness + sqrt(impact%kernel(2.0_wp*tau)))
+      end do
+      unrest = ((now(col_force) - weight)/weight)**2 &
+         + slope*impact%mass*(root*velocity/weight)**2
+   end function unrest
 
    !> Whether the estimated error exceeds the accuracy requested by so much that there is no result.
    !> What the velocity of the impact does not determine is known, and no fault of the solution

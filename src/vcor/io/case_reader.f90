@@ -10,8 +10,9 @@ module vcor_io_case_reader
    use vcor_io_path, only : path_from
    use vcor_case_values, only : convert, convert_text, range_message
    use vcor_case_address, only : resolve, unknown_group, unknown_key
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, groups, key_t, list_key, real_key
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_text, only : has_control, integer_text, printable, shortened
    implicit none
    private
@@ -241,7 +242,7 @@ contains
       end if
       ! the check refuses two options for one quantity; of two calls by a program the last one
       ! counts
-      call case%oust(address, always=.not. present(option))
+      call case%drop_alternative(address, always=.not. present(option))
       call case%set(address, entry)
    end subroutine override
 

@@ -7,7 +7,8 @@ module vcor_io_coverage
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_address, only : swept_addresses
    use vcor_case_body, only : material_of_case
-   use vcor_case_case, only : address_t, case_t, operator(==)
+   use vcor_case_case, only : case_t
+   use vcor_case_entries, only : address_t, operator(==)
    use vcor_case_grid, only : coordinates, grid_t
    use vcor_case_identified, only : find_reliance, reliance_t
    use vcor_error, only : error_t

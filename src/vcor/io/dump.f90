@@ -8,8 +8,9 @@
 !> of each, text of the case, and where its groups and values come from, in the order of the text.
 module vcor_io_dump
    use, intrinsic :: iso_fortran_env, only : int32
-   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, first_row, groups, key_row, last_row
+   use vcor_case_entries, only : address_t, entry_t
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_case_reader, only : read_case_text

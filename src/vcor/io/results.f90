@@ -3,6 +3,7 @@
 !>     summary       a row per impact; for materials a row for each: glassy and rubbery modulus, and
 !>                   the values at t0 and omega_min
 !>     history       a row per time
+!>     bounces       a row per bounce
 !>     relaxation    E(t), a row per material and time
 !>     dynamic       E', E'' and tan(delta), a row per material and angular frequency
 !>
@@ -11,6 +12,7 @@
 !> omega >= omega_min, is given by contact_time and min_frequency of each table, which are missing
 !> if the impact has no result, and by the column in_window.
 module vcor_io_results
+   use vcor_impact_bounces, only : bounces_t
    use vcor_impact_history, only : history
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
@@ -19,12 +21,12 @@ module vcor_io_results
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_case_grid, only : axis_t, grid_t
-   use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t, &
-      summary_t
+   use vcor_sweep_quantity, only : bounce_quantities, bounce_values, history_quantities, &
+      label_length, labels_of, quantity_t, summary_t
    implicit none
    private
 
-   public :: summary_table, history_table, moduli_tables
+   public :: summary_table, history_table, bounces_table, moduli_tables
 
    !> Value of in_window if there is no window
    integer, parameter :: unknown = -1
@@ -124,6 +126,40 @@ contains
          end associate
       end do
    end subroutine history_table
+
+   !> Bounces: a row per bounce
+   subroutine bounces_table(table, title, case_text, bounces)
+      type(table_t), intent(out) :: table
+      character(len=*), intent(in) :: title
+      character(len=*), intent(in) :: case_text
+      type(bounces_t), intent(in) :: bounces
+
+      real(wp) :: values(size(bounce_quantities), bounces%count)
+      integer :: i, j
+
+      do i = 1, bounces%count
+         values(:, i) = bounce_values(i, bounces%list(i))
+      end do
+      call new_table(table, 'bounces', title, case_text)
+      table%facts = [column_of('bouncing_time', [bounces%total_time], 's', &
+         'time to the end of the bounces'), &
+         column_of('bouncing_time_error', [bounces%total_time_error], 's', &
+         'estimated error of bouncing_time')]
+      do j = 1, size(bounce_quantities)
+         associate (quantity => bounce_quantities(j))
+            if (j == 1) then
+               call add_dimension(table, column_of(quantity%name, nint(values(j, :)), &
+                  quantity%unit, quantity%meaning))
+            else if (quantity%is_whole) then
+               call add_column(table, column_of(quantity%name, nint(values(j, :)), &
+                  quantity%unit, quantity%meaning))
+            else
+               call add_column(table, column_of(quantity%name, values(j, :), quantity%unit, &
+                  quantity%meaning))
+            end if
+         end associate
+      end do
+   end subroutine bounces_table
 
    !> Moduli as tables
    subroutine moduli_tables(moduli, title, case_text, tables)

@@ -80,8 +80,8 @@ module vcor_solver_coupled
    !> leaves a nearly fluid plate in the middle of the contact
    real(wp), parameter :: resolved = 8.0_wp
    !> Relative error of the largest force from which it is computed again, if it comes before this
-   !> part of the contact or of the window: a later one has 60 steps before it, and a shorter window
-   !> would not resolve it much better
+   !> part of the contact or of the window: a window of three times its time then has at least
+   !> (1/3)/0.2 = 1.7 times as many steps before it, which divide an error of second order by 3
    real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
    !> Ratios to which window and radius are rounded up, so that impacts that differ by less share
    !> kernels, and their margin: of the contact that the search has found, by steps four times as

@@ -6,33 +6,62 @@
 !> is solved. A row of `unread` says which keys a method does not read, and a row of `own_rules`
 !> which value of a key is a method's own.
 !>
-!> A new feature needs a row in `features`, its exclusions in `refusals`, a line in `features_of` of
-!> `vcor_solver_type`, which sees it in an impact, and one in `features_of_case` of
-!> `vcor_case_mechanics`, which sees it in the keys of a case.
+!> A new method needs its row in `method_table`, its name in `method_choices` and `refusals` of what
+!> it does not solve. A new feature needs a row in `features`, its exclusions in `refusals`, a line
+!> in `features_of` of `vcor_solver_type`, which sees it in an impact, and one in `features_of_case`
+!> of `vcor_case_mechanics`, which sees it in the keys of a case.
 module vcor_solver_features
    use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
    use vcor_words, only : contains_word
    implicit none
    private
 
-   public :: feature_t, features, methods, solves, refuse_features, method_for, method_in_use
+   public :: method_t, method_table, method_choices, methods
+   public :: feature_t, features, solves, refuse_features, method_for, method_in_use
    public :: unread_t, unread, why_unread, own_rule_t, own_rules, refusal_t, refusals, reads
    public :: ive, direct, paper, coupled, of_body, of_thin_plate, of_hereditary_plate, &
       of_frozen_plate, of_layer, of_viscosity, of_boltzmann, of_receding, of_eq1, of_gravity, &
-      of_second_term, of_ghost, of_paper_scheme, of_structure
+      of_second_term, of_ghost, of_paper_scheme, of_structure, of_relaxing_plate, of_bounces
 
-   !> Names of the methods in the table: the schemes product and adams_bashforth of method direct
-   !> are direct and paper
-   character(len=7), parameter :: methods(*) = [character(len=7) :: 'ive', 'direct', 'paper', &
-      'coupled']
+   !> A method
+   type :: method_t
+      !> Its name: the schemes product and adams_bashforth of method direct are direct and paper
+      character(len=7) :: name = ''
+      !> What it does, in words
+      character(len=64) :: meaning = ''
+      !> Keys and values that ask for it, as in a case
+      character(len=64) :: keys = ''
+      !> Accuracy of the coefficient of restitution if none is requested [-]
+      real(wp) :: accuracy = 0.0_wp
+   end type method_t
+
+   !> The methods
+   type(method_t), parameter :: method_table(*) = [ &
+      method_t('ive', 'internal variables of a sum of exponentials, by collocation', &
+      "method = 'ive'", 1.0e-8_wp), &
+      method_t('direct', 'time steps of the integral equation', "method = 'direct'", 1.0e-6_wp), &
+      method_t('paper', "the paper's time steps", &
+      "method = 'direct', scheme = 'adams_bashforth'", 1.0e-6_wp), &
+      method_t('coupled', "contact and waves together, of waves = 'body'", "method = 'coupled'", &
+      1.0e-5_wp)]
+   !> Their names
+   character(len=7), parameter :: methods(*) = method_table%name
    !> Their places
-   integer, parameter :: ive = 1, direct = 2, paper = 3, coupled = 4
+   integer, parameter :: ive = findloc(methods == 'ive', .true., dim=1), &
+      direct = findloc(methods == 'direct', .true., dim=1), &
+      paper = findloc(methods == 'paper', .true., dim=1), &
+      coupled = findloc(methods == 'coupled', .true., dim=1)
+   !> Those that `solver.method` may have
+   character(len=*), parameter :: method_choices = 'auto ive direct coupled'
 
-   !> Places of the features
-   integer, parameter :: of_body = 5, of_paper_scheme = 6, of_thin_plate = 7, &
-      of_hereditary_plate = 8, of_frozen_plate = 9, of_layer = 10, of_boltzmann = 11, &
-      of_receding = 12, of_eq1 = 13, of_viscosity = 14, of_gravity = 15, of_second_term = 16, &
-      of_ghost = 17, of_structure = 18
+   !> Places of the features, after those of the methods
+   integer, parameter :: of_body = size(methods) + 1, of_paper_scheme = of_body + 1, &
+      of_thin_plate = of_body + 2, of_hereditary_plate = of_body + 3, &
+      of_frozen_plate = of_body + 4, of_layer = of_body + 5, of_boltzmann = of_body + 6, &
+      of_receding = of_body + 7, of_eq1 = of_body + 8, of_viscosity = of_body + 9, &
+      of_gravity = of_body + 10, of_second_term = of_body + 11, of_ghost = of_body + 12, &
+      of_structure = of_body + 13, of_relaxing_plate = of_body + 14, of_bounces = of_body + 15
 
    !> A feature of an impact, or of the way in which it is to be solved
    type :: feature_t
@@ -42,12 +71,10 @@ module vcor_solver_features
       character(len=64) :: keys = ''
    end type feature_t
 
+   integer :: k
    !> The features; the first ones are the methods themselves
    type(feature_t), parameter :: features(*) = [ &
-      feature_t('internal variables of a sum of exponentials', "method = 'ive'"), &
-      feature_t('time steps of the integral equation', "method = 'direct'"), &
-      feature_t("the paper's time steps", "method = 'direct', scheme = 'adams_bashforth'"), &
-      feature_t('contact and waves together', "method = 'coupled'"), &
+      (feature_t(method_table(k)%meaning, method_table(k)%keys), k=1, size(method_table)), &
       feature_t('waves in a plate of any thickness or a half space', "waves = 'body'"), &
       feature_t("the paper's scheme", "scheme = 'adams_bashforth'"), &
       feature_t('waves in a thin plate', "waves = 'constant', 'relaxing'"), &
@@ -61,7 +88,9 @@ module vcor_solver_features
       feature_t('a weight', 'gravity'), &
       feature_t('the second term of the Volterra series', 'volterra_order = 2'), &
       feature_t('motion after the separation', 'continue_after_separation'), &
-      feature_t('a struck structure', '&target')]
+      feature_t('a struck structure', '&target'), &
+      feature_t('waves in a thin plate whose modulus relaxes', "waves = 'relaxing'"), &
+      feature_t('several bounces', 'bounces')]
 
    !> A feature that methods, or other features, exclude
    type :: refusal_t
@@ -98,6 +127,16 @@ module vcor_solver_features
       'continue_after_separation method waves'), &
       refusal_t([ive, 0, 0], of_paper_scheme, &
       "adams_bashforth is a scheme of method = 'direct'", 'scheme method'), &
+      refusal_t([of_body, 0, 0], of_bounces, "with waves = 'body' no dent is kept between two " &
+      //'bounces: expected bounces = 1, or other waves', 'bounces waves'), &
+      refusal_t([of_hereditary_plate, of_frozen_plate, of_relaxing_plate], of_bounces, &
+      "a plate that has a memory is not followed from bounce to bounce: expected waves = 'none' " &
+      //"or 'constant', or bounces = 1", 'bounces waves'), &
+      refusal_t([of_second_term, of_ghost, 0], of_bounces, "bounces are followed for one term of " &
+      //'the Volterra series, and with the separation: expected bounces = 1', &
+      'bounces volterra_order continue_after_separation'), &
+      refusal_t([ive, paper, coupled], of_bounces, 'bounces after the first one are followed by ' &
+      //"method = 'direct' with scheme = 'product'", 'bounces method scheme'), &
       refusal_t([ive, 0, 0], of_second_term, &
       "the second term of the Volterra series is solved by method = 'direct' only", &
       'volterra_order volterra_coefficient method'), &
@@ -243,10 +282,10 @@ contains
       end do
    end subroutine refuse_features
 
-   !> Method in use. `auto` is the method that alone solves one of the features, or else the first
-   !> of ive, direct and coupled that solves all
+   !> Method in use: the one requested. `auto` is the method that alone solves one of the features,
+   !> or else the first of ive, direct and coupled that solves all
    pure function method_in_use(method, scheme, has) result(place)
-      !> Method requested: auto, ive, direct or coupled
+      !> Method requested, one of `method_choices`
       character(len=*), intent(in) :: method
       !> Scheme of the direct method requested
       character(len=*), intent(in) :: scheme
@@ -260,9 +299,11 @@ contains
 
       candidates = [ive, merge(direct, paper, scheme == 'product'), coupled]
       place = candidates(2)
-      if (method == 'ive') place = ive
-      if (method == 'coupled') place = coupled
-      if (method /= 'auto') return
+      if (method /= 'auto') then
+         i = findloc(methods == method, .true., dim=1)
+         if (i > 0 .and. i /= direct) place = i
+         return
+      end if
       ! each point of a sweep asks: the table is searched for the features that it has
       solved = .true.
       do feature = size(methods) + 1, size(features)
@@ -278,13 +319,13 @@ contains
 
    !> Name of the method in use, as a case has it
    pure function method_for(method, scheme, has) result(name)
-      !> Method requested: auto, ive, direct or coupled
+      !> Method requested, one of `method_choices`
       character(len=*), intent(in) :: method
       !> Scheme of the direct method requested
       character(len=*), intent(in) :: scheme
       !> The features, shape (size(features))
       logical, intent(in) :: has(:)
-      !> ive, direct or coupled
+      !> One of `method_choices` but auto
       character(len=7) :: name
 
       integer :: place

@@ -6,9 +6,9 @@ module vcor_solver_type
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : pi, wp
-   use vcor_solver_features, only : features, of_body, of_frozen_plate, of_ghost, of_gravity, &
-      of_hereditary_plate, of_layer, of_paper_scheme, of_receding, of_second_term, of_structure, &
-      of_thin_plate, of_viscosity
+   use vcor_solver_features, only : features, method_table, methods, of_body, of_bounces, &
+      of_frozen_plate, of_ghost, of_gravity, of_hereditary_plate, of_layer, of_paper_scheme, &
+      of_receding, of_relaxing_plate, of_second_term, of_structure, of_thin_plate, of_viscosity
    implicit none
    private
 
@@ -20,7 +20,7 @@ module vcor_solver_type
 
    !> Settings of a solution
    type :: solver_settings_t
-      !> One of auto, ive, direct, coupled
+      !> One of `method_choices` of `vcor_solver_features`
       character(len=longest_name) :: method = 'auto'
       !> Scheme of the direct method: product or adams_bashforth
       character(len=longest_name) :: scheme = 'product'
@@ -40,6 +40,8 @@ module vcor_solver_type
       logical :: first_contact = .false.
       !> Continue after the separation, to `end_time` or to twice the contact time
       logical :: ghost = .false.
+      !> Number of bounces under the weight to follow
+      integer :: bounces = 1
    end type solver_settings_t
 
    !> A method of solution. It may keep what it computes for similar impacts, which changes no
@@ -76,12 +78,14 @@ contains
       has = .false.
       has(of_second_term) = abs(settings%second_coefficient) > 0.0_wp
       has(of_ghost) = settings%ghost
+      has(of_bounces) = settings%bounces > 1
       has(of_paper_scheme) = settings%scheme /= 'product'
       if (.not. present(impact)) return
       has(of_body) = impact%face%has_waves
       has(of_thin_plate) = impact%target%moves()
       has(of_hereditary_plate) = impact%target%hereditary()
       has(of_frozen_plate) = impact%target%frozen()
+      has(of_relaxing_plate) = impact%target%varies() .and. .not. impact%target%frozen()
       has(of_structure) = impact%target%structure%exists()
       has(of_layer) = impact%law%is_of_layer()
       has(of_receding) = impact%law%receding
@@ -91,19 +95,12 @@ contains
 
    !> Accuracy of the coefficient of restitution if none is requested
    pure function default_accuracy(method) result(accuracy)
-      !> ive, direct or coupled
+      !> Its name in `methods` of `vcor_solver_features`
       character(len=*), intent(in) :: method
       !> Accuracy [-]
       real(wp) :: accuracy
 
-      select case (method)
-      case ('ive')
-         accuracy = 1.0e-8_wp
-      case ('coupled')
-         accuracy = 1.0e-5_wp
-      case default
-         accuracy = 1.0e-6_wp
-      end select
+      accuracy = method_table(findloc(methods == method, .true., dim=1))%accuracy
    end function default_accuracy
 
    !> Solve an impact, and compare its estimated error with the requested accuracy, only here
@@ -130,7 +127,7 @@ contains
          outcome = evaluate(impact, trajectory)
          if (outcome%status == contact_resting &
              .and. .not. abs(solver%settings%second_coefficient) > 0.0_wp) &
-            call outcome%settle(impact)
+            call outcome%come_to_rest(impact)
          if (all(outcome%status /= [contact_separated, contact_resting])) return
          if (trajectory%returns .and. .not. solver%settings%first_contact) then
             call raise(error, error_numerical, 'the structure strikes the sphere again after the ' &

@@ -23,7 +23,7 @@ module vcor_sweep_points
    use vcor_case_catalogue, only : catalogue, wanted
    use vcor_case_cause, only : may_contribute
    use vcor_case_grid, only : grid_t, new_grid
-   use vcor_case_inputs, only : inputs_t, quantity_t
+   use vcor_case_inputs, only : input_key_t, inputs_t
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_reader, only : quantity_at
    use vcor_case_reading, only : refuse_unread
@@ -57,7 +57,7 @@ module vcor_sweep_points
       !> Message for a value out of range, shape (axes)
       type(error_t), allocatable, private :: objections(:)
       !> The numbers of the inputs that vary, shape (axes)
-      type(quantity_t), allocatable, private :: quantities(:)
+      type(input_key_t), allocatable, private :: quantities(:)
    contains
       procedure :: is_grid
    end type sweep_t
@@ -170,7 +170,7 @@ contains
          associate (axis => self%grid%axes(i), key => catalogue(row))
             self%ranges(i) = key%range
             self%objections(i)%message = axis%name//' is out of range, expected '//wanted(key)
-            call self%case%oust(axis%address, always=.true.)
+            call self%case%drop_alternative(axis%address, always=.true.)
             do j = 1, size(axis%values)
                if (.not. contains_number(key%range, axis%values(j))) cycle
                call self%case%set(axis%address, axis%values(j))

@@ -4,6 +4,7 @@ module vcor_sweep_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_t, raise
+   use vcor_impact_bounces, only : bounce_t, end_names
    use vcor_impact_history, only : history_columns
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, &
@@ -15,6 +16,7 @@ module vcor_sweep_quantity
    private
 
    public :: quantity_t, quantities, history_quantities, values_of, row_of
+   public :: bounce_quantities, bounce_values
    public :: quantity_value, quantity_names, quantity_place, labels_of, label_length
    public :: summary_t, values_t, new_summary
    public :: status_t, statuses, status_name, point_pending, point_invalid, point_failed
@@ -125,7 +127,33 @@ module vcor_sweep_quantity
       quantity_t('plate_velocity', "U'", 'm/s', 'velocity of the plate'), &
       quantity_t('contact_radius', 'a', 'm', 'radius of the contact')]
 
+   !> Columns of bounces, in the order of `bounce_values`
+   type(quantity_t), parameter :: bounce_quantities(*) = [ &
+      quantity_t('bounce', 'n', '1', 'number of the bounce', is_whole=.true.), &
+      quantity_t('time', 't', 's', 'first touch, since that of the first bounce'), &
+      quantity_t('velocity', 'v', 'm/s', 'velocity of the sphere at first touch'), &
+      quantity_t('cor', 'e', '1', 'velocity of the sphere after over that before'), &
+      quantity_t('cor_error', 'de', '1', 'estimated error of cor'), &
+      quantity_t('contacts', 'n', '1', 'number of contacts with a structure', is_whole=.true.), &
+      quantity_t('last_separation', 't_n', 's', 'last separation, since the first touch of all'), &
+      quantity_t('rebound_height', 'H', 'm', 'height of the flight above the surface at rest'), &
+      quantity_t('max_force', 'F_max', 'N', 'largest contact force'), &
+      quantity_t('max_indentation', 's_max', 'm', 'largest indentation')]
+
 contains
+
+   !> Values of a bounce
+   pure function bounce_values(number, bounce) result(values)
+      !> Its number
+      integer, intent(in) :: number
+      type(bounce_t), intent(in) :: bounce
+      !> Values, each in its unit, in the order of `bounce_quantities`
+      real(wp) :: values(size(bounce_quantities))
+
+      values = [real(number, wp), bounce%time, bounce%velocity, bounce%cor, bounce%cor_error, &
+         real(bounce%contacts, wp), bounce%separation, bounce%height, bounce%max_force, &
+         bounce%max_indentation]
+   end function bounce_values
 
    !> List the columns of a summary in their order: name, symbol, unit, meaning, value. A new column
    !> needs no other place. Without a result the outcome has NaN for its numbers
@@ -162,6 +190,14 @@ contains
          outcome%last_separation)
       call list%add('structure_energy', 'W_s', 'J', 'energy left in a structure', &
          outcome%structure_energy)
+      call list%add('bounces', 'N', '1', 'number of bounces', real(outcome%bounces, wp), &
+         is_whole=.true.)
+      call list%add('bouncing_time', 't_N', 's', 'time to the end of the bounces', &
+         outcome%bouncing_time)
+      call list%add('bouncing_time_error', 'dt_N', 's', 'estimated error of bouncing_time', &
+         outcome%bouncing_time_error)
+      call list%add('bounces_end', '', '', 'how the bounces ended', &
+         real(outcome%bounces_end, wp), labels=end_names, first=0)
       call list%add('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0', &
          outcome%min_frequency)
       call list%add('inelasticity', 'lambda', '1', "Zener's inelasticity parameter", &

@@ -4,13 +4,14 @@ module vcor_verify_models
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : find_group
    use vcor_case_cause, only : explain
-   use vcor_case_inputs, only : inputs_t, of_plate, of_target, shape_punch, target_block, &
+   use vcor_case_inputs, only : inputs_t, of_plate, of_target, target_block, &
       target_none, target_plate, target_rod
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_reader, only : read_inputs, waves_of
    use vcor_impact_contact, only : pair_eq1, pair_series
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_shape, only : shapes
    use vcor_impact_target, only : waves_hereditary
    use vcor_kinds, only : pi, wp
    use vcor_material, only : material_t, new_material
@@ -223,13 +224,13 @@ contains
       if (.not. allocated(error)) then
          if (inputs%material(of_plate)%model /= 'rigid') inputs%waves = waves_of(trim(model%waves))
          inputs%waves_are_chosen = .false.
-         ! a flat punch does not recede
-         inputs%receding = model%law == 'receding' .and. inputs%shape /= shape_punch
+         inputs%receding = model%law == 'receding' .and. shapes(inputs%shape)%recedes
          if (problem%reading%has(case%address('contact', 'pair'))) &
             inputs%pair = merge(pair_series, pair_eq1, model%pair == 'series')
          inputs%settings%method = 'auto'
          inputs%settings%scheme = 'product'
          inputs%settings%ghost = .false.
+         inputs%settings%bounces = 1
          if (model%is_half_space) inputs%half_thickness = 0.0_wp
          inputs%target%share = model%share
          if (model%is_infinite) call remove_ends(inputs, error)

@@ -53,7 +53,7 @@ class Card:
     density: float | None = None
     #: Keys of &material that shift the times with temperature
     shift: Shift = dataclasses.field(default_factory=dict)
-    #: What is left out or changed
+    #: Remarks on what is left out or changed
     remarks: tuple[str, ...] = ()
     units: str = "SI"
 
@@ -128,7 +128,7 @@ class Card:
         return "\n".join([*(form.comment + row for row in head), *form.write(card)]) + "\n"
 
     def notes(self, code: str) -> list[str]:
-        """What is to be known of the card of a program."""
+        """Notes on the card of a program."""
         form, notes, nu = FORMATS[code], list(self.remarks), self.poisson_ratio
         if nu == 0.5 and form.incompressible:
             notes.append(f"Poisson's ratio 0.5 needs {form.incompressible}")
@@ -141,6 +141,7 @@ class Card:
         return notes + list(filter(None, [form.shifts.get(str(self.shift.get("shift")))]))
 
     def __str__(self) -> str:
+        """The card as a &material group, its remarks as comments."""
         keys = {
             "name": self.name, "model": "prony", "density": self.density,
             "poisson_ratio": self.poisson_ratio, "equilibrium_modulus": self.equilibrium_modulus,
@@ -445,6 +446,7 @@ def _law(law: str, *constants: float) -> dict[str, str | float]:
 
 
 def _write_abaqus(card: Card) -> list[str]:
+    """Lines of *MATERIAL: *DENSITY, *ELASTIC, *VISCOELASTIC, TIME=PRONY, *TRS."""
     law, gas = str(card.shift.get("shift", "")), _number(_gas(card.units))
     lines = [f"*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0., UNIVERSAL GAS={gas}"] * (law == "arrhenius")
     name = card.name if re.fullmatch(r"[A-Za-z]\w*", card.name) else f'"{card.name}"'
@@ -616,6 +618,7 @@ _TN = "the shift of kind TN is taken as ln A = H/R (1/Tr - 1/T), unconfirmed: ch
 
 
 def _write_ansys(card: Card, number: str = "1") -> list[str]:
+    """Lines of commands MP and TB for material `number`."""
     values = {"DENS": card.density, "EX": card.glassy_modulus, "PRXY": card.poisson_ratio}
     lines = [f"MP,{key},{number},{_number(one)}" for key, one in values.items() if one is not None]
     pairs = list(map(_number, itertools.chain(*zip(card.ratios, card.times, strict=True))))
@@ -631,6 +634,7 @@ def _write_ansys(card: Card, number: str = "1") -> list[str]:
 
 
 def _write_mpl(card: Card) -> list[str]:
+    """Lines of a material library: those of Ansys for the material _MATL."""
     begin = ["/NOP", "TBDEL,ALL,_MATL", "MPDEL,ALL,_MATL"]
     return [*begin, *_write_ansys(card, "_MATL"), "/GO"]
 
@@ -771,6 +775,7 @@ _DYNA = {"GENERAL_VISCOELASTIC": 8, "076": 8, "76": 8, "VISCOELASTIC": 6, "006":
 
 
 def _write_general(card: Card) -> list[str]:
+    """Lines of *MAT_GENERAL_VISCOELASTIC: terms of shear and bulk modulus by decay rates."""
     g, k, constants = card.shear, card.bulk, [*card.constants, 0.0, 0.0, 0.0][:3]
     if card.shift:
         constants[1] *= math.log(10) if card.shift["shift"] == "wlf" else 1 / _gas(card.units)
@@ -788,6 +793,7 @@ def _write_general(card: Card) -> list[str]:
 
 
 def _write_one_term(card: Card) -> list[str]:
+    """Lines of *MAT_VISCOELASTIC: one term of shear, a constant bulk modulus."""
     moduli = (card.shear * card.glassy_modulus, card.shear * card.equilibrium_modulus)
     return [
         "*MAT_VISCOELASTIC_TITLE+",
@@ -886,6 +892,7 @@ def _write_ogden(card: Card) -> list[str]:
 
 
 def _write_boltzman(card: Card) -> list[str]:
+    """Lines of /MAT/LAW34: one term of shear, a constant bulk modulus."""
     moduli = (card.shear * card.glassy_modulus, card.shear * card.equilibrium_modulus)
     return [
         "/MAT/LAW34/1",
@@ -952,6 +959,7 @@ def _read_openradioss(source: Source) -> Card:
 
 
 def _write_comsol(card: Card) -> list[str]:
+    """Lines of a table of branches, shear modulus and relaxation time, with constants above."""
     values = {
         "density": card.density, "shear_modulus": card.shear * card.equilibrium_modulus,
         "bulk_modulus": card.bulk * card.glassy_modulus, **card.shift,

@@ -272,7 +272,7 @@ def _check(made: Card, source: Source) -> None:
         source.fail(0, f"the card makes a group that vcor refuses: {why}")
 
 
-#: What a file of each program has
+#: Line by which a file of each program is recognised
 _MARKS = (
     ("lsdyna", r"(?im)^\*MAT_"),
     ("abaqus", r"(?im)^\*(MATERIAL|ELASTIC|VISCOELASTIC)\b"),
@@ -315,6 +315,7 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor card`: write the card of a material of a case, or read a card as a &material."""
     nu = options.poisson_ratio
     text = _text.read_text(options.file)
     if not head_of(text) and re.search(r"(?im)^\s*&material\b", text):

@@ -42,7 +42,7 @@ SPHERES = ("sphere", "true_sphere")
 #: Columns that an export needs
 COLUMNS = ("cor", "cor_sphere", "cor_error", "cor_sphere_error", "contact_time", "max_force",
            "initial_energy", "validity", "validity_cause")  # fmt: skip
-#: What e is, and where its end of contact is
+#: Meaning of e, and where its end of contact is
 MEANING = {
     "cor_sphere": "speed of the sphere away from the plate at rest, divided by that towards it",
     "cor": "relative speed of the bodies after the impact, divided by that before",
@@ -55,7 +55,7 @@ STEPS, RUNS = 400, 3
 COMMENTS = {".c": "// ", ".cpp": "// ", ".dat": "! ", ".xml": ""}
 
 
-#: What is written for a law, its parameters, and numbers for the templates
+#: Text of a law, its parameters, and numbers for the templates
 Fit = tuple[str, Twin, dict[str, str]]
 
 
@@ -72,7 +72,7 @@ class Export:
     header: Sequence[str]
     #: Largest misfit of the program's law or interpolation to e
     misfit: float
-    #: What is written for each law of the program and its end of contact, the best one first
+    #: Text of each law of the program and its end of contact, the best one first
     options: Mapping[str, Twin]
 
     def __str__(self) -> str:
@@ -291,7 +291,7 @@ def solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.
 
 
 def not_judged(cases: Sequence[Case]) -> list[str]:
-    """What the validity of cases leaves out, as a material has no yield strength."""
+    """Measures that the validity of cases leaves out, as a material has no yield strength."""
     names = {str(case[f"{body}.material"]): case for case in cases for body in ("sphere", "plate")}
     bare = [name for name, case in names.items()
             if case[f"{name.strip().replace(' ', '_')}.yield_strength"] is None]  # fmt: skip
@@ -300,7 +300,7 @@ def not_judged(cases: Sequence[Case]) -> list[str]:
 
 
 def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
-    """What the numbers are for."""
+    """Validity and conditions of the numbers, as lines of a head."""
     temperature = case["impact.temperature"]
     end = case["contact.law"] or "boltzmann"
     waves = case["plate.waves"] or "none"
@@ -509,7 +509,7 @@ def _numbers(case: Case, curve: xr.Dataset, twin: Twin) -> dict[str, str]:
 
 
 def _entered_in_mfix(e: float) -> float:
-    """What HERTZIAN takes for e: it has the factor 2 of a linear dashpot, not sqrt(5)."""
+    """Restitution to give to HERTZIAN, whose factor is 2, of a linear dashpot, not sqrt(5)."""
     share = math.sqrt(5) / 2 * math.log(e) / math.hypot(math.pi, math.log(e)) if e > 0 else math.nan
     return math.exp(math.pi * share / math.sqrt(1 - share**2)) if share > -1 else math.nan
 

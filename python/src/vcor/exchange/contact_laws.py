@@ -51,10 +51,12 @@ class Law:
         """Restitution and contact time of s'' = -s^n - damping s^p s', s(0) = 0, s'(0) = 1."""
 
         def rate(_: float, y: Floats) -> tuple[float, float]:
+            """Derivatives of indentation and velocity in the scales of the law."""
             s = max(y[0], 0.0)
             return y[1], -(s**self.n) - damping * s**self.p * y[1]
 
         def end(_: float, y: Floats) -> float:
+            """A number that is 0 at the end of the contact: force over s^p if clipped, else s."""
             force: float = max(y[0], 0.0) ** (self.n - self.p) + damping * y[1]
             return force if self.clipped else y[0]
 
@@ -91,6 +93,7 @@ class Law:
         duration = CubicSpline(nodes, np.log(found[:, 1]))
 
         def restitution(x: float) -> Floats:
+            """Restitution at the velocities, shape (n,)."""
             e: Floats = np.exp(-loss(x + power) * np.exp(x + power))
             return np.minimum(e, 1.0)
 
@@ -134,7 +137,7 @@ class Twin:
 
     @property
     def entered(self) -> float:
-        """What a program takes for e to come to this C; without clipping, e itself."""
+        """Restitution to give to a program so that it has this C; without clipping, e itself."""
         share = self.damping / math.sqrt(self.mass * self.stiffness) / self.law.critical
         return math.exp(-math.pi * share / math.sqrt(1 - share**2)) if share < 1 else math.nan
 

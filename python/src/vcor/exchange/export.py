@@ -109,6 +109,10 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor export`: restitution at velocities A:B:N [m/s], and the input of another program.
+
+    UsageError: velocities that are no range with 2 to 10000 numbers.
+    """
     try:
         low, high, count = options.velocities.split(":")
         if not (0 < float(low) < float(high) < math.inf and 2 <= int(count) <= 10000):

@@ -49,7 +49,7 @@ from .targets import TARGETS, TEMPLATES, Target
 ROUNDING = 1e-3
 #: Most bodies, so that a matrix can be read
 MOST = 40
-#: What all pairs must have in common, and what counts where it is not given
+#: Keys that all pairs must have in common, and their values where they are not given
 COMMON = {"impact.temperature": None, "impact.gravity": 0.0, "contact.law": None}
 #: Compliance of a body that a fit makes rigid, relative to that of a contact
 RIGID = 1e-3
@@ -65,6 +65,7 @@ class Body:
     layer: str = ""
 
     def __str__(self) -> str:
+        """Material and size, as a comment of a file has them."""
         if self.radius < math.inf:
             return f"{self.material}, radius {self.radius:.6g} m"
         return f"wall of {self.material}{self.layer}"
@@ -287,7 +288,7 @@ def _header(
     curves: Mapping[tuple[int, int], xr.Dataset],
     masses: Sequence[float],
 ) -> list[str]:
-    """What the numbers are for."""
+    """Validity and conditions of the numbers, as lines of a head."""
     case, curve = next(iter(table.values())), next(iter(curves.values()))
     temperature, gravity = case["impact.temperature"], case["impact.gravity"]
     v = curve.velocity.values
@@ -457,6 +458,7 @@ _Cases = Mapping[tuple[int, int], Case]
 
 def _lammps(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequence[float],
             modulus: Floats) -> Parts:  # fmt: skip
+    """Parts of the LAMMPS template: groups, pair_coeff lines, walls, radii and masses."""
     n, law = len(masses), {at: f"{fit[0]} tangential linear_nohistory 0 0"
                            for at, fit in laws.items()}  # fmt: skip
     return {
@@ -482,6 +484,7 @@ def _symmetric(laws: _Laws, n: int, key: str, nothing: str = "1") -> list[list[s
 
 def _liggghts(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequence[float],
               modulus: Floats) -> Parts:  # fmt: skip
+    """Parts of the LIGGGHTS template: moduli, matrix of e, sizes and walls by type."""
     n, beads = len(bodies), len(masses)
     largest = max(body.radius for body in bodies[:beads])
     rows = [" ".join(row) for row in _symmetric(laws, n, "e")]
@@ -513,6 +516,7 @@ def _liggghts(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequen
 
 def _yade(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequence[float],
           modulus: Floats) -> Parts:  # fmt: skip
+    """Parts of the YADE template: matches of e by pair of materials, radii and masses."""
     # en is that of the law without the clipping, which YADE allows for by itself
     matches = ", ".join(f"({i - 1}, {j - 1}, {float(fit[1].cor[0]):.9g})"
                         for (i, j), fit in laws.items())  # fmt: skip
@@ -527,6 +531,7 @@ def _yade(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequence[f
 
 def _mercurydpm(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequence[float],
                 modulus: Floats) -> Parts:  # fmt: skip
+    """Parts of the MercuryDPM template: a species by type, and those of the pairs."""
     species = next(iter(laws.values()))[2]["species"]
     n = len(masses)
     density = [mass / (4 / 3 * math.pi * body.radius**3)
@@ -550,6 +555,10 @@ def _mercurydpm(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequ
 
 def _mfix(bodies: Sequence[Body], table: _Cases, laws: _Laws, masses: Sequence[float],
           modulus: Floats) -> Parts:  # fmt: skip
+    """Lines of the MFIX template: diameters, moduli, e of pairs and of the wall.
+
+    UsageError: more than one kind of walls.
+    """
     n = len(masses)
     if len(bodies) > n + 1:
         raise UsageError(f"mfix has one kind of walls, found {len(bodies) - n}")

@@ -1,4 +1,4 @@
-"""What data determine of parameters, in words, and what should be measured next."""
+"""Advice on parameters: those that data determine, in words, and what to measure next."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .limits import LEAST
 from .observations import Impacts
 from .search import Problem
 
-#: What could be measured next, each to NEXT_ERROR
+#: Quantities that could be measured next, each to NEXT_ERROR
 NEXT = ("cor_sphere", "contact_time", "max_force")
 NEXT_ERROR = 0.01
 #: Factor from the measured velocities to those that may be measured next

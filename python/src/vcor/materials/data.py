@@ -222,7 +222,7 @@ def _differ(data: pd.DataFrame, across: str) -> float:
 
 
 def _replicates(data: pd.DataFrame) -> str:
-    """What is said of replicates, empty if there are none."""
+    """Remark on replicates, empty if there are none."""
     try:
         found = curves(data)
     except InputError:

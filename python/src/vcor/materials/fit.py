@@ -299,6 +299,10 @@ def _named_arrays(data: Any, poisson_ratio: float | None) -> Any:
 
 
 def _samples_of_arrays(data: Any) -> Samples:
+    """Samples of (times, moduli) or (frequencies, storage, loss), shape (n,) each, sorted.
+
+    InputError: other arrays, or a number out of 1e-30 to 1e30.
+    """
     parts = list(data) if np.iterable(data) else []
     columns = [numbers(part, "data", np.inf, "numbers").ravel() for part in parts]
     rows = np.array(columns) if len({len(column) for column in columns}) == 1 else np.empty((0, 0))

@@ -44,6 +44,11 @@ class Sampled:
     """A material of a case, sampled in place of data."""
 
     def __init__(self, options: argparse.Namespace) -> None:
+        """Sample the material of --from-model; a case with &sweep has its first values.
+
+        The window of times follows from the contact time of its impact; where that has no result, a
+        note says so. UsageError: a --set that is no GROUP.KEY=VALUE.
+        """
         path, name = _parts(options.from_model)
         self.path = path
         self.case = read(path)
@@ -152,7 +157,7 @@ def _parts(source: str) -> tuple[str, str]:
 
 
 def report(fit: Fit, source: str, note: str, tail: Sequence[str]) -> str:
-    """What the command prints before the group."""
+    """Report that the command prints before the group."""
     samples = fit.samples
     lines = [f"vcor {__version__}  {source}", note, "", f"  {_title(fit)}"]
     lines.append(f"    {'parameter':24s}{'value':>16s} {'unit':8s}+- standard error")
@@ -327,12 +332,14 @@ def _parser() -> _command.Parser:
 
 
 def _whole(text: str) -> int:
+    """A whole number >= 1 of an option."""
     if not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"found '{text}', expected a whole number from 1")
     return int(text)
 
 
 def _positive(text: str) -> float:
+    """A number > 0 and finite of an option."""
     try:
         value = float(text)
     except ValueError:
@@ -373,6 +380,7 @@ def _check_options(options: argparse.Namespace) -> dict[str, float]:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor fit`: fit data, or samples of a material; print the report and write the files."""
     fix, ratio = _check_options(options), options.poisson_ratio
     density, name, notes, place_of = options.density, options.name, [], ""
     sampled = None

@@ -22,7 +22,7 @@ MOST_BYTES = 50_000_000
 _MOST_UNPACKED = 4 * MOST_BYTES
 #: Most cells of a spreadsheet, counted up to the last one of each row, and columns of any file
 _MOST_CELLS, MOST_COLUMNS = 10_000_000, 2000
-#: What a cell of a spreadsheet has whose formula fails
+#: Values of a cell of a spreadsheet whose formula fails
 _ERRORS = ("#NULL!", "#DIV/0!", "#VALUE!", "#REF!", "#NAME?", "#NUM!", "#N/A")
 #: Encodings of instruments that do not write Unicode; the one whose names are known is taken
 _ENCODINGS = ("cp1252", "shift_jis", "gb18030", "iso8859_7", "latin-1")
@@ -153,7 +153,7 @@ def _narrow(grid: Grid) -> Grid:
 
 
 def _bytes(name: str) -> bytes:
-    """What a file holds, or the standard input for `-`; refused beyond MOST_BYTES."""
+    """Bytes of a file, or of the standard input for `-`; refused beyond MOST_BYTES."""
     try:
         if name == "-" and sys.stdin is None:
             raise FileError("the standard input is closed")
@@ -257,6 +257,7 @@ def _sheets(name: str, sheets: Iterable[Any]) -> Grid:
 
 
 def _cell(value: Any) -> str:
+    """Text of a cell of a spreadsheet; empty for none and for an error."""
     if value is None or value in _ERRORS or value != value:
         return ""
     if isinstance(value, bool):

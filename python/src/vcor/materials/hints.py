@@ -29,7 +29,7 @@ _ONE_OF = (
 
 
 def of_impacts(head: Head, names: Collection[str]) -> list[str]:
-    """What a column beside columns of some names may be, the likeliest first; empty: unknown."""
+    """Names that a column beside others may have, the likeliest first; empty: unknown."""
     units = quantities_of(head.unit) if head.unit else list(_OF_IMPACTS)
     may = [name for unit in units for name in _OF_IMPACTS.get(unit, [])]
     there = {*names}.union(*(pair for pair in _ONE_OF if pair & {*names}))

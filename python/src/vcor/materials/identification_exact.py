@@ -145,11 +145,12 @@ def corrected(problem: Problem, seed: int) -> tuple[Floats, float] | None:
     None if they cannot be: there are records of impacts, thin mechanics do not follow the data, or
     the correction is not good enough.
     """
-    thin, k = list(thin_cases(problem.case).values()), len(problem.free)
-    if not thin or any(isinstance(block, Record) for block in problem.blocks):
+    thin, k = thin_cases(problem.case, problem.free), len(problem.free)
+    good = [one.case for one in thin.values() if one.reads.all()]
+    if not good or any(isinstance(block, Record) for block in problem.blocks):
         return None
     try:
-        made = Corrected(problem, thin[0])
+        made = Corrected(problem, good[0])
         problem.correct(made)
         x, _ = problem.best(seed)
         beside = np.vstack([np.eye(k), -np.eye(k)])

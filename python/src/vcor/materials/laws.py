@@ -109,6 +109,7 @@ class LawProblem(Problem):
     """Residuals of a law by the logarithms of its free parameters; one that may be 0 is linear."""
 
     def __init__(self, model: str, fixed: Mapping[str, float], samples: Samples) -> None:
+        """Set up a fit of `model` to samples; `fixed` has given parameters in SI units."""
         self.model, self.law, self.samples = model, LAWS[model], samples
         self.names = list(self.law.units)
         self.values = np.array([fixed.get(name, 1.0) for name in self.names])

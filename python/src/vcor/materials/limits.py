@@ -134,6 +134,7 @@ class _Profile:
     """The least sum of squares while a parameter is held at values to one side of the best."""
 
     def __init__(self, fit: Fit, i: int, side: int, held: Sequence[int]) -> None:
+        """Take parameter `i` of a fit, to the side +1 or -1; those in `held` do not vary."""
         self.fit, self.i, self.side = fit, i, side
         covariance, x, problem = fit.covariance(held), fit.x, fit.problem
         self.others = [j for j in range(len(x)) if j != i and j not in held]
@@ -232,7 +233,7 @@ class _Profile:
         return found_at, math.sqrt(max(found - fit.chi2, 0.0))
 
     def end(self, at: Floats, rise: float, inside: float) -> _End:
-        """What the end is if it is at a point: set by data, a range, or open.
+        """Kind of the end if it is at a point: set by data, a range, or open.
 
         The data set no end where there is no result, nor where another parameter that may have
         followed this one has come to the end of its range, or so far that it is not followed.

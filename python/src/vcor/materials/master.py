@@ -53,13 +53,13 @@ class Master:
     log_error: Floats
     laws: tuple[Law, ...]
     curves: tuple[Curve, ...]
-    #: What was found at pairs of temperatures whose step is that of the law
+    #: Remarks on pairs of temperatures whose step is that of the law
     flat: tuple[str, ...] = ()
     #: Whether the moduli are also proportional to the temperature
     vertical: bool = False
     #: Where storage and loss moduli give different shifts, in words
     apart: tuple[str, ...] = ()
-    #: What was taken of each file
+    #: Remarks on the columns taken of each file
     taken: tuple[str, ...] = ()
 
     def curve(self) -> tuple[Floats, ...]:
@@ -129,6 +129,7 @@ class Master:
         )
 
     def __str__(self) -> str:
+        """The report: a row per temperature, the laws with standard errors, what is not sure."""
         kelvin = self.reference_temperature
         lines = [*self.taken, f"reference temperature {kelvin:.2f} K ({kelvin - ZERO_C:.2f} C)", ""]
         lines.append(f"{'T [K]':>10s}{'T [C]':>10s}{'log10 a_T':>12s}{'error':>8s}")
@@ -374,6 +375,7 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor master`: shift the curves, print the report, write the master curve and the shift."""
     given = options.reference_temperature
     reference = kelvin(given, "--reference") if given is not None else None
     ratio, vertical = options.poisson_ratio, options.vertical_shift

@@ -91,7 +91,7 @@ _AT = re.compile(
 
 @dataclass(frozen=True)
 class Head:
-    """What the head of a column says."""
+    """Head of a column, as it is understood."""
 
     #: As it stands in the file
     text: str
@@ -113,7 +113,7 @@ class Head:
     angular: bool = False
     #: Whether the unit is that of the symbol, as Hz is of f
     implied: bool = False
-    #: What is wrong with it, for a message
+    #: Fault of it, for a message
     flaw: str = ""
     #: Why its temperature is not sure, for a message
     doubt: str = ""
@@ -209,7 +209,7 @@ def _parts(text: str) -> list[tuple[str, str]]:
 
 
 def read_head(text: str) -> Head:
-    """What the head of a column says: its quantity, its unit, and what goes with them."""
+    """Quantity and unit that the head of a column names, with what goes with them."""
     given = text
     if len(text) > MOST_LETTERS:
         return Head(given)

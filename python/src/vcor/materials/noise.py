@@ -24,6 +24,13 @@ class Noise:
     """
 
     def __init__(self, blocks: Sequence[Block], errors: Mapping[str, float]) -> None:
+        """Collect the errors of all data of the blocks.
+
+        `errors` has relative standard errors > 0 by quantity, for data without their own.
+        UsageError: an error <= 0, or of a quantity that the data do not have or that has its own.
+        InputError: some data have a standard error and others none, or a datum without an error is
+        not positive.
+        """
         quantity = [name for block in blocks for name in block.quantity]
         sources = [block.source for block in blocks for _ in block.quantity]
         value, self._scale, self._digit, at, sigma = (

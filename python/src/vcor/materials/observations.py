@@ -53,7 +53,7 @@ PULSE, LEAST_PULSE, APART = 0.3, 0.1, 20.0
 #: Part of the largest force of a pulse at which its contact begins and ends, and lengths of a
 #: contact that are kept on each side of one of several
 TOUCH, BESIDE_PULSE = 0.01, 2.0
-#: What the name of a record has behind that of its file, if it is one of several
+#: End of the name of a record, behind that of its file, if it is one of several
 IMPACT = " (impact "
 #: Most impacts of a table: a fit solves each some 500 times, which takes 0.03 s an impact on a thin
 #: plate, so a minute
@@ -73,6 +73,15 @@ class Impacts:
     def __init__(
         self, source: str, columns: Mapping[str, Floats], case: Case, written: Written = NO_DIGITS
     ) -> None:
+        """Take the rows of a table of impacts.
+
+        `columns` has SI units, shape (rows,) each: the settings of the rows and what was measured,
+        with NAME_sigma for a standard error [same unit, nan: not known]. `written` has the digits
+        of the file. Velocities that are missing are those of the case.
+
+        InputError: an unknown column, a number out of range, a row without a setting, no measured
+        quantity, or more than MOST_IMPACTS rows.
+        """
         self.source = source
         columns, digits = _as_velocities(source, dict(columns), case, written)
         self.settings: dict[str, Floats] = {}
@@ -151,12 +160,15 @@ class Impacts:
         errors: Floats = np.fmax(number(case, "solver.accuracy") * self.scale, found)
         return errors
 
-    def possible(self, case: Case, addresses: list[str], values: Floats) -> NDArray[np.bool_]:
-        """Whether the impact of median velocity has a result, for each row of values."""
-        one = np.argsort(self.velocity)[[len(self.velocity) // 2]]
-        found = self.quantities(case, addresses, values, self.names, one)
-        possible: NDArray[np.bool_] = np.all(np.isfinite(found[:, 0]), axis=1)
-        return possible
+    def steps(self, case: Case, addresses: list[str], values: Floats, part: float) -> Floats:
+        """Steps of an impact for each row of values, inf without a result.
+
+        By the part of the impacts that are slower than it: 0 is the slowest one, 1 the fastest.
+        """
+        one = np.argsort(self.velocity)[[round(part * (len(self.velocity) - 1))]]
+        found = self.quantities(case, addresses, values, [*self.names, "steps"], one)[:, 0]
+        steps: Floats = np.where(np.isfinite(found).all(axis=1), found[:, -1], np.inf)
+        return steps
 
     def quantities(
         self,
@@ -218,6 +230,11 @@ class Record:
     def __init__(
         self, source: str, columns: Mapping[str, Floats], case: Case, written: Written = NO_DIGITS
     ) -> None:
+        """Take the force, or acceleration times mass of the sphere, at rising times [N, m/s2, s].
+
+        Columns of shape (n,), n >= 5 with finite numbers; settings of SETTINGS are those of the
+        first row. InputError: fewer rows, times that do not rise, or no contact in them.
+        """
         self.source = source
         self.settings = {
             address: float(columns[name][0])
@@ -306,7 +323,7 @@ class Record:
         return model + self.baseline
 
     def said(self) -> str:
-        """What was taken, and how: the baseline of the parameters that were tried last."""
+        """Remark on the record: how it was taken, and its baseline by the parameters tried last."""
         turned = ", inverted" * self.turned
         return (
             f"{self.taken or self.source}; force above a baseline of {self.baseline:.4g} N{turned}"
@@ -330,6 +347,12 @@ class Moduli:
         self, source: str, columns: Mapping[str, Floats], material: str, case: Case,
         written: Written = NO_DIGITS,
     ) -> None:  # fmt: skip
+        """Take moduli [Pa] > 0 at times [s] or angular frequencies [rad/s], shape (n,) each.
+
+        `material` is the name in the case. Temperatures [K] that agree are those of the case if
+        the material has no shift. InputError: a column is missing or not positive, or the case has
+        no modulus there.
+        """
         self.source, self.material = source, material
         self.dynamic = "frequency" in columns
         names = ["storage_modulus", "loss_modulus"] if self.dynamic else ["relaxation_modulus"]

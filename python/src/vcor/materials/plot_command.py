@@ -97,6 +97,7 @@ def _settings(options: Any) -> dict[str, Any]:
 
 
 def _width(word: str) -> float:
+    """Width [cm] of an option, a number of cm or with its unit."""
     unit = next((unit for unit in _UNITS if word.endswith(unit)), "")
     try:
         return float(word.removesuffix(unit)) * _UNITS.get(unit, 1.0)
@@ -107,6 +108,7 @@ def _width(word: str) -> float:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor plot`: draw the files, write the figure and with --script what draws it again."""
     with warnings.catch_warnings():
         # such as letters that the font does not have
         warnings.simplefilter("ignore")

@@ -48,6 +48,7 @@ class Series(Problem):
     """A Prony series; its variables are E_0, if it is free, and the logarithms of moduli, times."""
 
     def __init__(self, samples: Samples, given: float | None) -> None:
+        """Begin without terms; `given` is the equilibrium modulus [Pa], None: free."""
         self.samples, self.given = samples, given
         #: Smallest and largest logarithm of a time
         first, last = REACH_OF_FREQUENCIES if samples.dynamic else REACH_OF_TIMES

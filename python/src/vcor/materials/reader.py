@@ -79,6 +79,12 @@ class Reader:
     def __init__(
         self, grid: Grid, choice: Choice, unit_of: Callable[[str], str] | None, whole: bool
     ) -> None:
+        """Read a grid of cells as `choice` says.
+
+        `unit_of` gives the SI unit of an address that is the head of a column; `whole`: columns
+        that belong together, as both moduli, must be complete. UsageError: rows that `choice` takes
+        and the file does not have.
+        """
         self.whole = whole
         grid = choice.select(grid)
         self.path, self.grid, self.choice, self.unit_of = grid.path, grid, choice, unit_of
@@ -735,6 +741,7 @@ class Reader:
                 )
 
     def _no_table(self) -> InputError:
+        """Error of a file without numbers, or with numbers without a head."""
         numbers = [row for row in self.grid.rows if row.numbers()]
         if not numbers:
             last = self.grid.rows[-1].line if self.grid.rows else 1
@@ -748,7 +755,7 @@ class Reader:
         )
 
     def _incomplete(self, table: Table, kind: str) -> InputError:
-        """What a table lacks, and which column it could be."""
+        """Error of a table that lacks a column, with the name of one that it could be."""
         place = f"{self.path}:{table.line}"
         flawed = [head for head in table.heads if head.flaw]
         free = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import time
@@ -28,6 +29,8 @@ STRIDE, MOVED, SHORTER = 1e-3, 0.05, 3
 STARTS, REFINED = 64, 4
 #: Time of the starts that is said, as the rest takes long then [s]
 LONG = 2.0
+#: Times the usual number of steps of an impact that a start may take
+DEAR = 100
 #: Parts in which the starts are tried
 PARTS = 32
 #: Logarithm of the factor from the first guess beyond which parameters are not followed
@@ -56,6 +59,11 @@ class Problem:
         self, case: Case, free: Sequence[str], blocks: Sequence[Block],
         errors: Mapping[str, float], bar: Any,
     ) -> None:  # fmt: skip
+        """Set up the search for `free`, addresses of numbers > 0, from their values in the case.
+
+        `errors` as in `Noise`; `bar` shows progress. UsageError: a first guess that is not > 0.
+        InputError: fewer data than parameters, or none left to estimate their scatter from.
+        """
         self.case, self.free, self.blocks, self.bar = case, list(free), list(blocks), bar
         self.impacts = [block for block in blocks if isinstance(block, Impacts)]
         #: Velocities of the first impacts, or of the case [m/s]
@@ -126,6 +134,7 @@ class Problem:
         return np.split(values, ends)
 
     def _errors_of_model(self, x: Floats) -> Floats:
+        """Errors of the solutions at x, of each datum, shape (data,)."""
         if self.corrected:
             own = iter(self.corrected.errors)
             return np.concatenate([
@@ -234,14 +243,17 @@ class Problem:
         """The smallest sum of squares from several starts, the first one the case itself."""
         x = self.guess
         spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
-        # of impacts that fail slowly one is enough; all in parts, for the bar and Ctrl-C
+        # of impacts that fail slowly, or hardly rebound and take as long, one is enough; all in
+        # parts, for the bar and Ctrl-C
         begin = time.perf_counter()
-        for impacts in self.impacts:
-            good = []
+        for impacts, place in itertools.product(self.impacts, (0.5, 0.0, 1.0)):
+            found_steps = []
             for part in np.array_split(spread, PARTS):
-                good.append(impacts.possible(self.quick, self.free, np.exp(x + part)))
+                found_steps.append(impacts.steps(self.quick, self.free, np.exp(x + part), place))
                 self.bar.update(len(part))
-            spread = spread[np.concatenate(good)]
+            steps = np.concatenate(found_steps)
+            usual = np.median(steps[np.isfinite(steps)]) if np.isfinite(steps).any() else 0.0
+            spread = spread[steps <= DEAR * usual]
         starts = np.vstack([x, x + spread])
         found_there = np.vstack([self.predict(part) for part in np.array_split(starts, PARTS)])
         sums = np.sum(((found_there - self.value) / self.sigma) ** 2, axis=1)

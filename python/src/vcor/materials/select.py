@@ -36,7 +36,7 @@ class Condition:
     seen: bool = False
     #: Whether a row was taken
     met: bool = False
-    #: What the column has, in the order of the file
+    #: Values of the column, in the order of the file
     found: dict[str, None] = field(default_factory=dict)
 
     def __str__(self) -> str:
@@ -97,6 +97,10 @@ class Condition:
 
 
 def _kelvin(text: str, what: str) -> float:
+    """Temperature [K] of a condition.
+
+    UsageError: a text that is no temperature.
+    """
     label = read_label(text)
     if not math.isfinite(label.kelvin):
         raise UsageError(f"{option('where')}: found '{what:.80}', expected temperatures such as "

@@ -86,7 +86,7 @@ class Curve:
         return f"{self.temperature:.2f} K"
 
     def whitening(self) -> Floats:
-        """What makes the scatter of the logarithms of the moduli that of independent numbers of 1.
+        """Matrix that makes the logarithms of moduli independent numbers with a scatter of 1.
 
         The scatter is that about parabolas.
         """

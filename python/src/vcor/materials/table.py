@@ -110,6 +110,7 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor table`: print the plain table that a material of model table reads."""
     at = options.temperature
     text, taken = table(
         options.data, columns_option(options.columns), options.units,

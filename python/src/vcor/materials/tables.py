@@ -44,7 +44,7 @@ class Table:
     heads: list[Head]
     #: Temperature in a title, and rows, for each part below a title
     parts: list[tuple[Label, list[Row]]]
-    #: What is wrong with it, if it is used
+    #: Fault of it, for a message if it is used
     flaw: str = ""
 
     def rows(self) -> list[Row]:
@@ -86,6 +86,11 @@ class Choice:
         files: int = 1,
         where: Where = None,
     ) -> None:
+        """Take the `columns`, `units` and `where` that a user gives to a command or function.
+
+        `files` is the number of files that share them: what one lacks may stand in another.
+        UsageError: a name of no quantity.
+        """
         #: Which rows are taken
         self.where = conditions(where)
         #: Whether what one file lacks may stand in another
@@ -211,7 +216,7 @@ class Choice:
 
 
 def _texts(given: Any, name: str) -> Any:
-    """What a user says of columns: a text, texts, or texts by their names; else refused."""
+    """Columns as a user gives them: a text, texts, or texts by their names; else refused."""
     if isinstance(given, np.ndarray):
         given = given.tolist()
     if given is None or isinstance(given, str):
@@ -238,6 +243,7 @@ def _named(key: str) -> tuple[str, float]:
 
 
 def _matches(head: Head, text: str) -> bool:
+    """Whether a text is the head of a column, with or without its unit."""
     given = plain(text)
     return given != "" and given in (plain(head.text), plain(re.sub(r"[\[(/].*", "", head.text)))
 
@@ -313,7 +319,7 @@ def _label(row: Row, *, among_others: bool = False) -> Label:
 
 
 def _too_wide(grid: Grid, run: Sequence[Row], table: Table) -> str:
-    """What is wrong if rows have numbers beyond the names of a table."""
+    """Error of rows that have numbers beyond the names of a table."""
     names = len(table.heads)
     width = max((i + 1 for row in run for i, c in enumerate(row.cells) if is_number(c)), default=0)
     if width <= names:
@@ -384,7 +390,7 @@ def _table(
 
 
 def _shifted(grid: Grid, line: int, units: Sequence[str], heads: Sequence[Head]) -> str:
-    """What is wrong with a line of units that has fewer cells than the names, or more."""
+    """Error of a line of units that has fewer cells than the names, or more."""
     need, n = len(heads), len(units)
     if grid.separator == "xlsx":
         return ""

@@ -1,4 +1,4 @@
-"""What a page shows of a case: numbers of the impact, its history, a curve, moduli.
+"""Answer of a page to a case: numbers of the impact, its history, a curve, moduli.
 
 Nothing here knows of a browser. `parts` gives one part after another, so that the thread that
 computes them can leave what nobody waits for any more.
@@ -60,11 +60,11 @@ class Curve:
 
 @dataclass
 class Answer:
-    """What is known of an impact; None what is not yet."""
+    """Results of an impact; None where there are none yet."""
 
     #: Columns of the summary by name, texts as words
     numbers: dict[str, float | str] | None = None
-    #: What the data of the materials do not cover, and numbers that look like those in another unit
+    #: Remarks on data that do not cover the impact, and on numbers that may be in another unit
     remarks: Sequence[str] = ()
     #: Height of the drop [m], nan if there is none
     drop: float = np.nan

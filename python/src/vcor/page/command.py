@@ -46,6 +46,10 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """`vcor page`: serve a live page, or write a page over ranges of --vary.
+
+    UsageError: options that contradict each other.
+    """
     vary: dict[str, str] = {}
     for word in options.vary:
         address, _, text = word.partition("=")

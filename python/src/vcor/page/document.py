@@ -32,7 +32,7 @@ MOST_BYTES = 2_000_000
 LEAST_POINTS, MOST_POINTS = 4, 257
 #: Patterns and widths of the curve by validity: told apart without colour
 LINES = {"good": ("solid", 3.0), "caution": ("dashed", 2.5), "outside": ("dotted", 2.5)}
-#: What a level means; docs/validity.md
+#: Meaning of the levels; docs/validity.md
 VERDICTS = {
     "good": "The model holds: no measure reaches its first threshold.",
     "caution": "Some numbers are off by a few per cent",
@@ -58,7 +58,7 @@ class Page:
 
 
 def said(table: Table) -> str:
-    """What a page says of the numbers behind it."""
+    """Text of a page about the numbers behind it."""
     grid = " x ".join(map(str, table.counts))
     words = f"{grid} impacts" + f"; {table.lost}" * bool(table.lost)
     words += f"; interpolated, checked by {table.fresh} other impacts: "

@@ -54,6 +54,7 @@ class Figures:
     """The figures of one page; `root` holds them."""
 
     def __init__(self) -> None:
+        """Make the sources and the figures, all of them empty."""
         self.is_dark = False
         self._sources = {
             name: ColumnDataSource(data={column: [] for column in columns}, name=name)
@@ -91,6 +92,7 @@ class Figures:
     # ------------------------------------------------------------------------- making
 
     def _new(self, name: str, height: int, x: str, y: str, **more: Any) -> Any:
+        """An empty figure with the tools of the page; `x` and `y` are the labels of its axes."""
         made = figure(
             height=height, sizing_mode="stretch_width", x_axis_label=x, y_axis_label=y,
             tools=_TOOLS, toolbar_location="above", name=name, **more,
@@ -103,6 +105,7 @@ class Figures:
         return made
 
     def _make_small(self) -> None:
+        """Make the figures of the impact, the loop and the moduli."""
         self.force = self._new("force", _SMALL, "time", "force", title="Impact")
         self.force.extra_y_ranges = {"s": Range1d(0, 1)}
         self.force.y_range, self.force.x_range = Range1d(0, 1), Range1d(0, 1)
@@ -216,6 +219,7 @@ class Figures:
         self._show_moduli(answer)
 
     def _show_curves(self, curves: Sequence[Curve], here: float | None, answer: Answer) -> None:
+        """Draw the present curve, the kept ones and the point of the case."""
         if self.curve is None:
             return
         for i, source in enumerate(self._curves):
@@ -270,6 +274,7 @@ class Figures:
             self._fit_axis()
 
     def _show_histories(self, histories: Sequence[Mapping[str, Floats] | None]) -> None:
+        """Draw force and indentation of some impacts; None: that one has no history."""
         known = [one for one in histories if one is not None]
         if not known:
             return
@@ -308,6 +313,7 @@ class Figures:
             plot.title.text = f"{name}: {what} {value / one:.3g} {shown}" if value > 0 else name
 
     def _show_moduli(self, answer: Answer) -> None:
+        """Draw storage and loss modulus of both materials, and the band that the impact sees."""
         if answer.moduli is None or answer.numbers is None:
             return
         found = list(answer.moduli.values())

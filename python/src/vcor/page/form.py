@@ -60,7 +60,7 @@ _SLIDERS = (
 _MORE = {"Ball": ["sphere"], "Surface": ["plate"], "Impact": ["impact"], "Mechanics": ["contact"]}
 #: Groups that a page has no widgets for: it writes no files and has a range of its own
 _NOT_SHOWN = ("sweep", "output")
-#: What a value is at first where a key needs one, in SI units as a namelist has it
+#: First value where a key needs one, in SI units as a namelist has it
 _AT_FIRST = {
     "thickness": "0.01", "surface_radius": "0.01", "base": "'bonded'", "body": "'block'",
     "mass": "1.0", "length": "0.3", "width": "0.03", "diameter": "0.02", "support": "'supported'",
@@ -72,7 +72,7 @@ _AT_FIRST = {
 }  # fmt: skip
 #: Places of a slider on each side of its middle
 _PLACES = 40
-#: What the library says of a value without effect, and an address in its lines
+#: Words of the library about a value without effect, and an address in its lines
 _UNREAD = "the impact does not read it"
 _ADDRESS = r"\b\w+\.\w+\b"
 _DIGITS = 3
@@ -82,6 +82,7 @@ class Field:
     """Widgets of a value."""
 
     def __init__(self, form: Form, address: str, key: Key) -> None:
+        """Make the widgets of the key `key` at `address`."""
         self._form, self.address, self.key = form, address, key
         said = [key.meaning]
         if key.range:
@@ -134,6 +135,7 @@ class Field:
         self.fault.visible = bool(message)
 
     def _options(self, case: Case) -> Any:
+        """Words of a Select: materials of the case and the library, or choices with meanings."""
         key = self.key
         if key.name == "material":
             own = self._form.names(case)
@@ -192,6 +194,7 @@ class Form:
     def __init__(
         self, case: Case, changed: Callable[[], None], styles: list[InlineStyleSheet]
     ) -> None:
+        """Make the widgets of all keys of the case."""
         self.case, self._changed, self.styles = case, changed, styles
         #: Names of materials that were added by the page from its library
         self._own = _names(case)
@@ -229,6 +232,7 @@ class Form:
         self.refresh()
 
     def _section(self, title: str) -> Iterator[Any]:
+        """Widgets of a section: Ball, Surface, Impact or Mechanics."""
         yield Div(text=f"<h2>{title}</h2>", stylesheets=self.styles)
         if title == "Surface":
             kinds = list(SURFACES)
@@ -285,6 +289,7 @@ class Form:
         yield box
 
     def _addresses(self, group: Group) -> Iterator[str]:
+        """Addresses of a group that the model of the case has."""
         model = self.case[f"{group.name}.{group.selector}"] if group.selector else None
         for key in group.keys_of(None if model is None else str(model)):
             # of a structure without a body nothing else is known
@@ -345,7 +350,7 @@ class Form:
         self._changed()
 
     def _follow(self, address: str, key: Key) -> None:
-        """What else a change brings: other keys, and waves that suit the surface."""
+        """Follow a change: other keys, and waves that suit the surface."""
         owner = address.rpartition(".")[0]
         group = groups()[key.group]
         if key.name == group.selector:
@@ -363,6 +368,7 @@ class Form:
             self.refresh()
 
     def _take_material(self, address: str, name: str) -> None:
+        """Give a body a material of the case or the library; the library's unused ones go."""
         if name not in self.names(self.case):
             self.case.add(offered()[name].read())
         self.case[address] = "'" + name.replace("'", "''") + "'"

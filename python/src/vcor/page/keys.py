@@ -69,6 +69,7 @@ class Key:
         return self._number(value)
 
     def _number(self, value: float) -> str:
+        """A number in the usual unit of the key, without rounding."""
         factor, offset = _decimals(self.usual, self.unit)
         found = (Decimal(repr(value)) - offset) / factor
         found = found.normalize()
@@ -94,6 +95,10 @@ class Key:
         return text
 
     def _si(self, text: str) -> str:
+        """A number in SI units as a namelist has it; a text that is no number stays as it is.
+
+        UsageError: a unit of another quantity.
+        """
         found = _NUMBER.fullmatch(text)
         if found is None:
             return text

@@ -56,7 +56,7 @@ from .worker import Worker
 MOST_BYTES = 4_000_000
 #: Digits of e in large; all digits stand in the table of numbers
 _DIGITS = 4
-#: What the curve may be drawn against, in this order, before all other numbers
+#: Numbers that the curve may be drawn against, in this order, before all others
 _AXES = ("impact.drop_height", "impact.velocity", "impact.temperature", "sphere.diameter",
          "sphere.radius", "plate.thickness")  # fmt: skip
 _BODIES = {"plate": "surface", "sphere": "ball"}
@@ -64,7 +64,7 @@ _log = logging.getLogger(__name__)
 
 
 class Page:
-    """What one browser tab shows.
+    """Content of one browser tab.
 
     Parameters
     ----------
@@ -84,6 +84,7 @@ class Page:
     def __init__(
         self, document: Document, case: Case, files: Sequence[str], span: Span | None, folder: Path
     ) -> None:
+        """Make the widgets, add them to the document and ask for the first answer."""
         self._document, self._files = document, list(files)
         self._folder = tempfile.TemporaryDirectory(dir=folder)
         self._worker, self._beside = Worker(), Worker()
@@ -113,6 +114,7 @@ class Page:
         self._changed()
 
     def _end(self, _context: Any) -> None:
+        """End the threads and remove the files of a tab that was closed."""
         self._worker.end()
         self._beside.end()
         self._folder.cleanup()
@@ -134,6 +136,7 @@ class Page:
         div.text, div.visible = text, bool(text)
 
     def _div(self, name: str, text: str = "", *classes: str) -> Div:
+        """An element for a text; invisible while there is none."""
         return Div(
             text=text,
             name=name,
@@ -144,6 +147,7 @@ class Page:
         )
 
     def _button(self, label: str, press: Callable[[], None], name: str) -> Button:
+        """A button that calls `press`."""
         made = Button(label=label, stylesheets=self._styles, name=name)
         made.on_click(lambda _event=None: press())
         return made
@@ -151,6 +155,7 @@ class Page:
     # ------------------------------------------------------------------------- answers
 
     def _answer_parts(self) -> list[Any]:
+        """Elements for e, e with exact mechanics, and the other numbers."""
         self._e = self._div("answer")
         self._numbers = self._div("numbers")
         self._exact = self._div("exact")
@@ -216,6 +221,7 @@ class Page:
             self._show_exact, number, e))  # fmt: skip
 
     def _show_exact(self, number: int, e: float) -> None:
+        """Show e with exact mechanics, if the answer is to the last question."""
         if number != self._number:
             return
         text = f'<p class="exact">With exact mechanics e = {e:.{_DIGITS}f}</p>'
@@ -237,11 +243,13 @@ class Page:
         return found
 
     def _first_span(self) -> Span | None:
+        """Range of the first number that the case has; None: it has none."""
         for address in self._axes():
             return self._span_of(address)
         return None
 
     def _span_of(self, address: str) -> Span:
+        """A range around the value of an address."""
         value = self.case[address]
         unit = key_of(self.case, address).unit
         first, last, is_log = start_of(value if isinstance(value, (int, float)) else None, unit)
@@ -250,9 +258,11 @@ class Page:
         return Span(address, first, last, is_log)
 
     def _span_key(self) -> Any:
+        """Key of the number of the axis; None: there is none."""
         return key_of(self.case, self._span.address) if self._span else None
 
     def _axis_part(self) -> Any:
+        """Widgets that choose the number of the axis and its range."""
         self._axis = Select(title="e against", options=[], stylesheets=self._styles, name="axis",
                             sizing_mode="stretch_width")  # fmt: skip
         self._from = TextInput(title="from", stylesheets=self._styles, name="from", width=110)
@@ -294,10 +304,12 @@ class Page:
             self._is_setting = False
 
     def _axis_chosen(self, _attr: str, _old: str, new: str) -> None:
+        """Take another number for the axis."""
         if not self._is_setting:
             self._set_span(self._span_of(new))
 
     def _range_given(self, _attr: str, _old: str, _new: str) -> None:
+        """Take the ends and the spacing of the axis, or say what is wrong with them."""
         if self._is_setting or self._span is None:
             return
         key = self._span_key()
@@ -319,6 +331,7 @@ class Page:
         self._set_span(Span(self._span.address, first, last, is_log))
 
     def _set_span(self, span: Span) -> None:
+        """Draw the curve over another range and ask for it."""
         self._span = span
         self._put(self._axis_fault, "")
         self._figures.set_span(span, self._span_key())
@@ -328,6 +341,7 @@ class Page:
     # ---------------------------------------------------------------------------- kept
 
     def _kept_parts(self) -> list[Any]:
+        """Widgets that keep curves and list them."""
         keep = self._button("Keep this curve", self._keep, "keep")
         clear = self._button("Remove kept curves", self._forget, "forget")
         self._kept_list = self._div("kept")
@@ -335,6 +349,7 @@ class Page:
                        sizing_mode="stretch_width", name="kept_row")]  # fmt: skip
 
     def _keep(self) -> None:
+        """Keep the curve, in the place of the oldest one if there are MOST_KEPT."""
         if self._answer.numbers is None:
             return
         if len(self._kept) == MOST_KEPT:
@@ -343,11 +358,12 @@ class Page:
         self._changed()
 
     def _forget(self) -> None:
+        """Remove the kept curves."""
         self._kept.clear()
         self._changed()
 
     def _labels(self) -> list[str]:
-        """What distinguishes the present case and each kept one."""
+        """Labels of the present case and each kept one: the values that differ."""
         cases = [self.case, *[one for one, _ in self._kept]]
         addresses: dict[str, None] = {}
         for one in cases[1:]:
@@ -375,6 +391,7 @@ class Page:
         return labels
 
     def _show_kept(self) -> None:
+        """List what distinguishes the present and the kept curves, with their e."""
         if not self._kept:
             self._put(self._kept_list, "")
             return
@@ -393,6 +410,7 @@ class Page:
     # ------------------------------------------------------------------------ measured
 
     def _measured_parts(self) -> list[Any]:
+        """Widgets for rows of measured points."""
         self._rows = TextAreaInput(title="Rows", rows=4, stylesheets=self._styles, name="rows",
                                    max_length=MOST_BYTES, sizing_mode="stretch_width")  # fmt: skip
         self._rows.on_change("value", lambda _a, _o, _n: self._read_rows())
@@ -419,6 +437,7 @@ class Page:
         self._figures.show_points(found)
 
     def _remove_points(self) -> None:
+        """Remove the measured points."""
         self._of_file = None
         self._rows.value = ""
         self._read_rows()
@@ -426,6 +445,7 @@ class Page:
     # --------------------------------------------------------------------------- files
 
     def _file_parts(self) -> list[Any]:
+        """Widgets that take a file."""
         self._upload = ColumnDataSource(data={"name": [], "content": [], "size": []}, name="upload")
         self._upload.on_change("data", self._uploaded)
         self._body = RadioButtonGroup(
@@ -440,6 +460,7 @@ class Page:
                        name="files")]  # fmt: skip
 
     def _say_file(self, text: str, *, is_fault: bool = False) -> None:
+        """Say what became of a file."""
         self._put(self._file_said, text)
         self._file_said.css_classes = ["fault"] if is_fault else []
 
@@ -470,6 +491,7 @@ class Page:
             self._refuse(error)
 
     def _refuse(self, error: Error) -> None:
+        """Say why a file is refused."""
         line = str(error).replace(f"{self._folder.name}/", "")
         self._say_file(html.escape(line), is_fault=True)
 
@@ -543,6 +565,7 @@ class Page:
         body = list(_BODIES)[self._body.active or 0]
 
         def work() -> None:
+            """Fit; an error is handed over in place of the fit."""
             made: Any
             try:
                 made = fit(data, name=name)
@@ -554,6 +577,7 @@ class Page:
             self._later(done, made)
 
         def done(made: Any) -> None:
+            """Take the fit, or say why there is none."""
             self._is_busy = False
             if isinstance(made, Error):
                 self._refuse(made)
@@ -563,6 +587,7 @@ class Page:
         threading.Thread(target=work, daemon=True).start()
 
     def _take_fit(self, made: Any, name: str, file: str, body: str) -> None:
+        """Give a body the fitted material, with the density of the one before; show the data."""
         from ..materials.fit_command import remarks
 
         group = Case(made.group, name=file)
@@ -588,6 +613,7 @@ class Page:
     # ----------------------------------------------------------------------- take away
 
     def _take_parts(self) -> list[Any]:
+        """Widgets to take away case, table, figure and commands."""
         self._download = ColumnDataSource(data={"name": [], "text": [], "type": []})
         self._download.js_on_change("data", CustomJS(code=_SAVE))
         self._figure = Select(
@@ -613,6 +639,7 @@ class Page:
         stem = take_away.name_of(self.case)
 
         def work() -> None:
+            """Make the text; a fault is handed over in its place."""
             try:
                 text, fault = make(), ""
             except Error as error:
@@ -623,6 +650,7 @@ class Page:
             self._later(done, text, fault)
 
         def done(text: str, fault: str) -> None:
+            """Send the text to the browser, or say why there is none."""
             if fault:
                 self._put(self._take_said, f'<p class="fault">{html.escape(fault)}</p>')
                 return
@@ -631,14 +659,17 @@ class Page:
         threading.Thread(target=work, daemon=True).start()
 
     def _take_case(self) -> None:
+        """Give the case as a file."""
         case, folder = self.case.copy(), Path(self._folder.name)
         self._give(".nml", "text/plain", lambda: take_away.case_text(case, folder))
 
     def _take_table(self) -> None:
+        """Give the summary over the range of the axis as CSV."""
         case, span, folder = self.case.copy(), self._span, Path(self._folder.name)
         self._give("_summary.csv", "text/csv", lambda: take_away.table(case, span, folder))
 
     def _take_figure(self) -> None:
+        """Give the chosen figure, with all kept curves, as SVG."""
         kind, span = str(self._figure.value), self._span
         cases = [self.case.copy(), *[one.copy() for one, _ in self._kept]]
         labels = self._labels() if self._kept else []

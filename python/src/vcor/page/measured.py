@@ -29,7 +29,7 @@ class Measured:
     #: Coefficient of restitution and length of the bar to each side, of shape (n,)
     e: Floats = field(default_factory=lambda: np.empty(0))
     bar: Floats = field(default_factory=lambda: np.empty(0))
-    #: What is wrong with lines, and what was taken for what
+    #: Faults of lines, and how columns were understood
     faults: list[str] = field(default_factory=list)
 
 

@@ -112,6 +112,7 @@ class Live:
 
 
 def _end(server: Server) -> None:
+    """Stop the server and its loop."""
     server.stop()
     server.io_loop.stop()
 
@@ -138,6 +139,7 @@ def live(case: Case, *, port: int | None = None) -> Live:
     made: list[Any] = []
 
     def work() -> None:
+        """Serve in this thread until the end."""
         with tempfile.TemporaryDirectory(prefix="vcor-page-") as folder:
             try:
                 loop = IOLoop(make_current=True)
@@ -200,6 +202,7 @@ def _open(url: str) -> bool:
 
 
 def _url(server: Server) -> str:
+    """Address of the page."""
     return f"http://{_ADDRESS}:{server.port}/"
 
 
@@ -234,6 +237,7 @@ def _server(
 
 
 def _free_port() -> int:
+    """A port that is free now."""
     with socket.socket() as one:
         one.bind((_ADDRESS, 0))
         return int(one.getsockname()[1])

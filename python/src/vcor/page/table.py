@@ -45,7 +45,7 @@ _STATE = ("status", "validity", "contacts")
 
 @dataclass(frozen=True)
 class Found:
-    """What a table has at a place: a value, or none between different states."""
+    """Entry of a table at a place: a value, or none between different states."""
 
     #: Coefficient of restitution of the sphere; nan if there is none
     value: float
@@ -79,7 +79,7 @@ class Table:
     other: int = 0
     #: How many points have no result, and why the first one has none; empty if all have one
     lost: str = ""
-    #: What the data behind the materials do not cover
+    #: Remarks on impacts that the data behind the materials do not cover
     beyond: list[str] = field(default_factory=list)
 
     def at(self, places: Sequence[float]) -> Found:
@@ -121,6 +121,7 @@ class Table:
         yield from map(list, itertools.product(*starts))
 
     def _index(self, place: Sequence[int]) -> int:
+        """Index of a place of the grid in a flat list."""
         return int(np.ravel_multi_index(tuple(place), self.counts))
 
 

@@ -1,4 +1,4 @@
-"""What a user takes from a live page: the case, a table, figures, and the lines that make them."""
+"""Files of a live page: the case, a table, figures; and the commands that make the same."""
 
 from __future__ import annotations
 
@@ -95,6 +95,7 @@ def differences(case: Case, other: Case) -> list[str]:
 
 
 def _quoted(word: str) -> str:
+    """A word as a shell needs it."""
     if re.fullmatch(r"[\w./=:+,()-]+", word):
         return word
     return "'" + word.replace("'", "'\\''") + "'"

@@ -16,6 +16,7 @@ class Worker:
     """A thread for the answers of one page; the last question replaces all others."""
 
     def __init__(self) -> None:
+        """Begin the thread; it waits."""
         self._changed = threading.Condition()
         self._next: Callable[[], None] | None = None
         self._is_over = False
@@ -33,6 +34,7 @@ class Worker:
     def _answer(
         self, number: int, parts: Callable[[], Iterator[T]], give: Callable[[T], None]
     ) -> None:
+        """Hand over parts, at most one each _APART [s], until another question is asked."""
         last, begin = None, time.monotonic()
         for part in parts():
             if number != self._number:
@@ -52,6 +54,7 @@ class Worker:
             self._changed.notify()
 
     def _work(self) -> None:
+        """Answer the last question, again and again, until the end."""
         while True:
             with self._changed:
                 while self._next is None and not self._is_over:

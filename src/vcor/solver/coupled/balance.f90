@@ -38,6 +38,11 @@ module vcor_solver_coupled_balance
       real(wp), allocatable, private :: now(:, :)
       !> G of a hat with itself and with the next [m], shape (hats)
       real(wp), allocatable, private :: same(:), next(:)
+      !> Factors of 1 + G W/w as of `factor`, shape (n, n), and whether they are those of the
+      !> springs that push
+      real(wp), allocatable, private :: system(:, :)
+      integer, allocatable, private :: pivots(:)
+      logical, private :: is_factored = .false.
    contains
       procedure :: begin
       procedure :: find_pushing
@@ -76,14 +81,13 @@ contains
       !> Error of code `error_numerical`
       type(error_t), allocatable, intent(out) :: error
 
+      ! rounds of all at once, ten times what a step takes, and of both kinds: one at a time takes
+      ! about as many as springs are wrong
       integer, parameter :: together = 30, most = 1000
       ! rounds after which missing forces are known, small as they are
       integer, parameter :: enough = 2
-      real(wp) :: force(kernel%mesh%hats)
-      real(wp), allocatable :: system(:, :), more(:)
-      integer, allocatable :: pivots(:)
-      integer :: round, i, n, wrong
-      logical :: regular
+      real(wp) :: force(kernel%mesh%hats), more(kernel%mesh%hats)
+      integer :: wrong(size(self%gap) + 1), round, count, i, n
 
       n = 0
       do round = 1, most
@@ -91,42 +95,63 @@ contains
          self%compression = self%gap
          force = 0.0_wp
          if (self%last > 0) then
-            call self%factor_system(kernel, system, pivots, regular)
-            if (.not. regular) exit
+            if (.not. self%is_factored) call self%factor_system(kernel)
+            ! there is no solution
+            if (.not. self%is_factored) exit
             call kernel%row%gather(merge(self%gap(:self%last), 0.0_wp, self%pushes(:self%last)), &
                force)
-            n = size(pivots)
+            n = size(self%pivots)
             force = force/kernel%local(0)
-            call solve(system, pivots, force(:n))
+            call solve(self%system, self%pivots, force(:n))
             call kernel%row%spread_hats(-matmul(self%now(:, :n), force(:n)), &
                self%compression)
          end if
-         wrong = 0
-         do i = 1, size(self%gap)
-            if ((self%compression(i) > 0.0_wp) .eqv. self%pushes(i)) cycle
-            wrong = i
-            if (round <= together) call self%change(kernel, i)
-         end do
-         if (wrong == 0) then
+         call find_wrong(self%compression, self%pushes, wrong, count)
+         if (count == 0) then
             call self%find_edge(kernel)
             if (self%last == 0) return
             do i = 1, enough
-               more = -product_with(self, matmul(self%now(:n, :n), self%missing(:n))) &
+               more(:n) = -product_with(self, matmul(self%now(:n, :n), self%missing(:n))) &
                   /kernel%local(0)
-               call solve(system, pivots, more)
-               more = force(:n) + more + self%missing(:n)
+               call solve(self%system, self%pivots, more(:n))
+               more(:n) = force(:n) + more(:n) + self%missing(:n)
                self%compression = self%gap
-               call kernel%row%spread_hats(-matmul(self%now(:, :n), more), self%compression)
+               call kernel%row%spread_hats(-matmul(self%now(:, :n), more(:n)), self%compression)
                call self%find_edge(kernel)
             end do
             return
          end if
-         if (round > together) call self%change(kernel, wrong)
+         if (round > together) then
+            call self%change(kernel, wrong(count))
+         else
+            do i = 1, count
+               call self%change(kernel, wrong(i))
+            end do
+         end if
+         self%is_factored = .false.
       end do
       call raise(error, error_numerical, 'no pressure balances a step of the contact: the plate ' &
          //'gives way within the step by more than the contact can resolve; take a thicker ' &
          //'plate, a lighter body or a slower impact')
    end subroutine find_pushing
+
+   !> Find the springs that push and would pull, or the reverse
+   pure subroutine find_wrong(compression, pushes, wrong, count)
+      !> Compression of the springs [m], and whether they push
+      real(wp), contiguous, intent(in) :: compression(:)
+      logical, contiguous, intent(in) :: pushes(:)
+      !> Their numbers, shape (>= springs + 1), and how many they are
+      integer, intent(out) :: wrong(:), count
+
+      integer :: i
+
+      count = 0
+      do i = 1, size(compression)
+         ! a place that the next one takes unless it is wrong
+         wrong(count + 1) = i
+         if ((compression(i) > 0.0_wp) .neqv. pushes(i)) count = count + 1
+      end do
+   end subroutine find_wrong
 
    !> Find the edge and what the springs miss there
    pure subroutine find_edge(self, kernel)
@@ -159,24 +184,22 @@ contains
 
    !> Factors of 1 + G W/w, for the hats that a spring which pushes acts on: the others have no
    !> force
-   pure subroutine factor_system(self, kernel, system, pivots, regular)
-      class(balance_t), intent(in) :: self
+   pure subroutine factor_system(self, kernel)
+      class(balance_t), intent(inout) :: self
       type(kernel_t), intent(in) :: kernel
-      !> Factors of `factor`, shape (n, n) with the number n of those hats
-      real(wp), allocatable, intent(out) :: system(:, :)
-      integer, allocatable, intent(out) :: pivots(:)
-      !> Whether there is a solution
-      logical, intent(out) :: regular
 
       integer :: j, n
 
       n = kernel%row%hat(self%last) + 1
-      allocate (system(n, n), pivots(n))
+      if (allocated(self%pivots)) then
+         if (size(self%pivots) /= n) deallocate (self%system, self%pivots)
+      end if
+      if (.not. allocated(self%pivots)) allocate (self%system(n, n), self%pivots(n))
       do j = 1, n
-         system(:, j) = product_with(self, self%now(:n, j))/kernel%local(0)
-         system(j, j) = system(j, j) + 1.0_wp
+         self%system(:, j) = product_with(self, self%now(:n, j))/kernel%local(0)
+         self%system(j, j) = self%system(j, j) + 1.0_wp
       end do
-      call factor(system, pivots, regular)
+      call factor(self%system, self%pivots, self%is_factored)
    end subroutine factor_system
 
    !> Product of G, of the first hats, and a vector

@@ -1,5 +1,6 @@
 !> The end of the contact, which lies between steps
 module vcor_solver_coupled_end
+   use vcor_impact_face, only : base_half_space
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_coupled_course, only : course_ended, course_t
@@ -14,21 +15,17 @@ module vcor_solver_coupled_end
 
 contains
 
-   !> Steps from the root of a falling series to its end, by inverse interpolation, or one step
+   !> Steps from the root of a falling series to its end, by inverse interpolation
    pure function before_end(value) result(steps)
-      !> Values at equal steps, the root near the last
+      !> Values at equal steps, falling, the root near the last
       real(wp), intent(in) :: value(:)
       !> Steps, < 0 if the root is after the end
       real(wp) :: steps
 
-      ! a contact that waves advance ends before the root
-      real(wp), parameter :: farthest = -20.0_wp
       real(wp) :: share
       integer :: i, j, n
 
       n = size(value)
-      steps = 1.0_wp
-      if (.not. all(value(2:) < value(:n - 1))) return
       steps = 0.0_wp
       do i = 1, n
          share = real(n - i, wp)
@@ -37,89 +34,108 @@ contains
          end do
          steps = steps + share
       end do
-      steps = min(max(steps, farthest), real(n - 1, wp))
    end function before_end
 
    !> Find the time at which the contact has ended.
    !>
    !> While the waves are faster than the edge, the contact of a round body shrinks as a^2 ~ t_s - t
    !> and its force falls as (t_s - t)^(3/2). This sends out waves, and the compression on the axis
-   !> ends like a root of time, which no step resolves. If those of an elastic half space, as stiff
-   !> as the plate in a step, had passed, the approach there would fall steadily: what else the face
-   !> does is slow. Its root t_s does not depend on steps and springs. What the waves do near it is
-   !> an impact problem of its own with one length, at which the edge is as fast as they are, a_s =
+   !> ends in a way that no step resolves. If those of an elastic half space, as stiff as the plate
+   !> in a step, had passed, the approach there would fall steadily: what else the face does is
+   !> slow. Its root t_s does not depend on steps and springs. What the waves do near it is an
+   !> impact problem of its own with one length, at which the edge is as fast as they are, a_s =
    !> R V/c, and one time, R V/c^2: V is the speed at which the steady approach falls, and R the
    !> radius of curvature of the body less that of the dent out of which it rises. So the contact
    !> ends R V/c^2 times a number before t_s that depends on Poisson's ratio of the plate and on the
-   !> part of the striker in the local compliance alone, `advance`
+   !> part of the striker in the local compliance alone, `advance`; a cone has no such length, and
+   !> what is sharper than a sphere hardly one. On a layer thinner than a_s the waves come back
+   !> before the end: there, and for blunt bodies, whose edge is faster than the waves for many
+   !> steps, the end is that of the compression as marched
    pure subroutine end_contact(course, impact, kernel, axis, beside, hats)
       !> The course, its last step the first without contact
       type(course_t), intent(inout) :: course
       type(impact_t), intent(in) :: impact
       type(kernel_t), intent(in) :: kernel
-      !> Compression on the axis in the last steps [m], at least 2
-      real(wp), intent(in) :: axis(:)
+      !> Compression on the axis from step 0 to the last [m]
+      real(wp), intent(in) :: axis(0:)
       !> Compression at `kernel%beside` in the last but one of them [m]
       real(wp), intent(in) :: beside
       !> Forces of the hats in all steps [N]
       real(wp), contiguous, intent(in) :: hats(:)
 
-      ! error of `advance` and of the radius of curvature
-      real(wp), parameter :: unknown = 0.01_wp
-      real(wp) :: steady(size(axis)), dent, fast
-      integer :: i, k
+      ! error of `advance` (see there), and of the radius of curvature
+      real(wp), parameter :: unknown = 0.006_wp
+      ! steps between the values from which the root is found
+      integer, parameter :: spans = 4
+      real(wp), allocatable :: steady(:)
+      real(wp) :: early, fast, root
+      integer :: i, k, stride
+      logical :: is_steady
 
       course%status = course_ended
       k = course%steps
-      steady = axis
       fast = 0.0_wp
-      if (allocated(kernel%passing)) then
-         do i = 1, size(axis)
-            steady(i) = axis(i) + passing(k - size(axis) + i, 1)
-         end do
-         if (abs(impact%law%start_exponent - round) <= 0.0_wp) then
-            i = size(axis) - 1
-            dent = steady(i) - (beside + passing(k - 1, 2))
-            if (dent > 0.0_wp) fast = time_of_waves(kernel%row%node(kernel%beside)**2/dent &
-               *(steady(i) - steady(i + 1))/course%dt)
-         end if
+      is_steady = impact%law%start_exponent >= round
+      if (allocated(kernel%passing) .and. abs(impact%law%start_exponent - round) <= 0.0_wp) &
+         call find_time_of_waves(fast, is_steady)
+      early = advance(kernel%moduli%poisson_ratio, kernel%striker_share)*fast
+      if (is_steady) then
+         ! a root that is several steps ahead is found from values that reach as far back
+         stride = max(1, min(k/spans, ceiling(early/(real(spans, wp)*course%dt))))
+         steady = [(axis(i) + passing(i, 1), i=k - stride*min(spans, k/stride), k, stride)]
+         is_steady = all(steady(2:) < steady(:size(steady) - 1))
       end if
-      if (impact%law%start_exponent < round .or. .not. fast >= 0.0_wp &
-          .or. fast > real(k, wp)*course%dt) then
-         ! the edge of a blunt body is faster than the waves for longer than a step, and that of any
-         ! body on a plate of very slow waves all the time
-         course%contact_time = (real(k, wp) - before_end(axis(size(axis) - 1:)))*course%dt
-         course%time_error = course%dt
-         return
+      if (is_steady) then
+         root = before_end(steady)*real(stride, wp)
+         ! the waves advance the end by less than R V/c^2
+         is_steady = root >= -max(1.0_wp, fast/course%dt) .and. root <= real(k, wp)
       end if
-      course%contact_time = (real(k, wp) - before_end(steady))*course%dt &
-         - advance(kernel%moduli%poisson_ratio, kernel%striker_share)*fast
-      course%time_error = unknown*fast
+      if (is_steady) then
+         course%contact_time = (real(k, wp) - root)*course%dt - early
+         course%time_error = unknown*fast
+      else
+         call end_of_fall(axis(max(0, k - 4):k), root, course%time_error)
+         course%contact_time = (real(k, wp) - root)*course%dt
+         course%time_error = course%time_error*course%dt
+      end if
 
    contains
 
-      !> R V/c^2, with the speed of shear waves in a step, as in the waves that pass
-      pure function time_of_waves(product) result(time)
-         !> R V [m2/s]
-         real(wp), intent(in) :: product
+      !> R V/c^2, with the speed of shear waves in a step, as in the waves that pass, and whether
+      !> the plate is thicker than R V/c
+      pure subroutine find_time_of_waves(time, is_thick)
          !> R V/c^2 [s]
-         real(wp) :: time
+         real(wp), intent(out) :: time
+         !> False too if the body rises out of a dent that is as curved as it, and if R V/c^2 is
+         !> longer than the contact
+         logical, intent(out) :: is_thick
 
-         real(wp) :: rate
+         real(wp) :: dent, here, rate, speed
 
+         time = 0.0_wp
+         here = axis(k - 1) + passing(k - 1, 1)
+         dent = here - (beside + passing(k - 1, 2))
+         is_thick = dent > 0.0_wp
+         if (.not. is_thick) return
          rate = 1.0_wp/course%dt
-         time = product*(real(impact%face%per_shear_speed(cmplx(rate, kind=wp)), wp)/rate)**2
-      end function time_of_waves
+         speed = rate/real(impact%face%per_shear_speed(cmplx(rate, kind=wp)), wp)
+         time = max(0.0_wp, kernel%row%node(kernel%beside)**2/dent &
+            *(here - axis(k) - passing(k, 1))*rate/speed**2)
+         is_thick = time <= real(k, wp)*course%dt .and. (impact%face%base == base_half_space &
+            .or. time*speed <= impact%face%thickness)
+      end subroutine find_time_of_waves
 
       !> Displacement of a node by the waves that pass
       pure function passing(step, node) result(displacement)
          !> Step, and 1: on the axis, 2: at `kernel%beside`
          integer, intent(in) :: step, node
-         !> Displacement [m]
+         !> Displacement [m], 0 without waves
          real(wp) :: displacement
 
          integer :: first
 
+         displacement = 0.0_wp
+         if (.not. allocated(kernel%passing)) return
          associate (n => kernel%mesh%hats, lags => size(kernel%passing, 2))
             first = max(1, step - lags + 1)
             displacement = sum(kernel%passing(:, lags - step + first:, node) &
@@ -128,11 +144,46 @@ contains
       end function passing
    end subroutine end_contact
 
-   !> Time by which the waves advance the end of the contact of a round body, over R V/c^2. By
-   !> marches of elastic spheres on elastic half spaces with 27 to 90 steps in R V/c^2; the formula
-   !> is within 0.025 of them, within 0.008 but where the striker is stiffer than the plate, and
-   !> within 0.006 for rigid ones. Of a soft striker the waves are a
-   !> small perturbation, by the first factor
+   !> End of a compression between the last step in which it is positive and the next. While the
+   !> edge is slower than the waves it falls as a line, and as soon as it is 0 the face moves
+   !> otherwise: a parabola through its last values ends there. Once the edge is faster, the
+   !> pressure does not know of it and falls steadily in time and radius, P ~ (t0 - t) - r^2; the
+   !> compression is its integral across the contact and falls as the power 3/2 of the time left.
+   !> It is then nearly the same line on both sides of 0, which the parabola reaches too early. The
+   !> two enclose the end
+   pure subroutine end_of_fall(axis, steps, error)
+      !> Compression on the axis in the last steps [m], the contact over in the last
+      real(wp), intent(in) :: axis(:)
+      !> Steps from the end of the fall to the last step, and their error
+      real(wp), intent(out) :: steps, error
+
+      real(wp) :: fall, bend, slope, square, line, parabola
+      integer :: n
+
+      n = findloc(axis > 0.0_wp, .true., dim=1, back=.true.)
+      ! of a ring that is left behind no more than the last step in contact is known
+      steps = 0.5_wp
+      error = 0.5_wp
+      if (n < 3 .or. n < size(axis) - 2 .or. n == size(axis)) return
+      line = axis(n)/(axis(n) - axis(n + 1))
+      ! u(x) = u - fall x + bend x (x + 1)/2, x steps after the last
+      fall = axis(n - 1) - axis(n)
+      bend = axis(n) - 2.0_wp*axis(n - 1) + axis(n - 2)
+      slope = fall - 0.5_wp*bend
+      square = slope**2 - 2.0_wp*bend*axis(n)
+      parabola = 1.0_wp
+      if (slope > 0.0_wp .and. square >= 0.0_wp) &
+         parabola = min(1.0_wp, 2.0_wp*axis(n)/(slope + sqrt(square)))
+      steps = real(size(axis) - n, wp) - 0.5_wp*(line + parabola)
+      error = 0.5_wp*abs(line - parabola)
+   end subroutine end_of_fall
+
+   !> Time by which the waves advance the end of the contact of a round body, over R V/c^2: by
+   !> marches of a paraboloid that is withdrawn at the speed V from an elastic half space, with 200
+   !> steps in R V/c^2 (tests/reference/end_of_contact.py). The compression on the axis ends as the
+   !> power 3/2 of the time left, of a soft striker after a longer line; the roots of both enclose
+   !> the end, and the polynomial is within 0.005 of their middle. Of a soft striker the waves are
+   !> a small perturbation, by the first factor
    elemental function advance(poisson_ratio, striker_share)
       !> Poisson's ratio of the plate [-]
       real(wp), intent(in) :: poisson_ratio
@@ -140,11 +191,18 @@ contains
       real(wp), intent(in) :: striker_share
       real(wp) :: advance
 
-      real(wp), parameter :: rigid(0:1) = [0.089_wp, -0.085_wp], soft(0:1) = [0.85_wp, -0.30_wp]
-      real(wp), parameter :: power = 1.4_wp
+      ! coefficients of powers of Poisson's ratio, for each power of the part of the striker
+      real(wp), parameter :: c(0:2, 0:3) = reshape([ &
+         0.055_wp, 0.071_wp, -0.174_wp, &
+         0.270_wp, 0.332_wp, -1.873_wp, &
+         1.287_wp, -2.272_wp, 5.414_wp, &
+         -0.804_wp, 1.081_wp, -2.286_wp], [3, 4])
+      real(wp) :: at(0:3)
 
-      advance = (1.0_wp - striker_share)*(rigid(0) + rigid(1)*poisson_ratio &
-         + (soft(0) + soft(1)*poisson_ratio)*striker_share**power)
+      at = matmul([1.0_wp, poisson_ratio, poisson_ratio**2], c)
+      associate (s => striker_share)
+         advance = (1.0_wp - s)*(at(0) + s*(at(1) + s*(at(2) + s*at(3))))
+      end associate
    end function advance
 
    !> Free flight of the sphere from the end of the contact on

@@ -127,7 +127,7 @@ contains
       type(kernel_t), intent(out) :: self
       type(face_t), intent(in) :: face
       type(mesh_t), intent(in) :: mesh
-      !> Response of the face, computed anew unless it suits the mesh
+      !> Response of the face, computed anew unless it suits the mesh, and as far as it needs it
       type(spectrum_t), intent(inout) :: spectrum
       !> Error of code `error_internal`
       type(error_t), allocatable, intent(out) :: error
@@ -155,8 +155,6 @@ contains
       type(spectrum_t), intent(inout) :: spectrum
       type(error_t), allocatable, intent(out) :: error
 
-      ! up to which a mesh with twice the elements of hats needs the spectrum, 2^1.5, and more
-      real(wp), parameter :: shared = 3.0_wp
       complex(wp) :: response(pair(self%mesh%hats, self%mesh%hats), 0:self%mesh%steps/2)
       real(wp), allocatable :: products(:, :)
       real(wp) :: last
@@ -165,8 +163,9 @@ contains
       response = 0.0_wp
       if (face%has_response()) then
          last = last_wavenumber(self%row)
-         if (.not. spectrum%suits(self%moduli, self%mesh%radius, last)) &
-            call new_spectrum(spectrum, face, self%moduli, self%mesh%radius, shared*last)
+         if (.not. spectrum%suits(self%moduli, self%mesh%radius)) &
+            call new_spectrum(spectrum, face, self%moduli, self%mesh%radius)
+         call spectrum%extend(face, last)
          call find_products(self%row, spectrum, last, products, error)
          if (allocated(error)) return
          if (face%has_waves) then

@@ -115,7 +115,7 @@ contains
          end do
          if (k == steps) return
          course%steps = k - needed + 1
-         call end_contact(course, impact, kernel, axis(max(0, k - 4):k - 1), &
+         call end_contact(course, impact, kernel, axis(0:k - 1), &
             beside(max(1, k - 2)), past%force(1:n*(k - 1)))
          course%impulse = course%dt*sum(course%force(1:k))
          call leave(course, impact)

@@ -2,7 +2,7 @@
 module vcor_solver_coupled_record
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_sphere, &
-      col_sphere_velocity, col_time, contact_lasting, contact_resting, contact_separated, &
+      col_sphere_velocity, col_time, columns, contact_lasting, contact_resting, contact_separated, &
       trajectory_t
    use vcor_kinds, only : unset, wp
    use vcor_solver_coupled_course, only : course_t
@@ -21,6 +21,7 @@ contains
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(inout) :: trajectory
 
+      real(wp) :: end(columns)
       integer :: i, n
 
       associate (a => pair%coarse, b => pair%fine)
@@ -34,17 +35,15 @@ contains
          ! the end, with the impulse of the whole contact
          n = n + 1
          trajectory%last = n
-         trajectory%final = n
-         associate (end => trajectory%state(:, n))
-            end = unset
-            end(col_time) = pair%contact_time
-            end(col_force) = 0.0_wp
-            end(col_sphere_velocity) = -pair%cor*impact%velocity
-            end(col_impulse) = impact%mass*(impact%free_velocity(pair%contact_time) &
-               + pair%cor*impact%velocity)
-            end(col_sphere) = limit(a%z(a%steps), b%z(b%steps))
-            end(col_indentation) = end(col_sphere)
-         end associate
+         end = unset
+         end(col_time) = pair%contact_time
+         end(col_force) = 0.0_wp
+         end(col_sphere_velocity) = -pair%cor*impact%velocity
+         end(col_impulse) = impact%mass*(impact%free_velocity(pair%contact_time) &
+            + pair%cor*impact%velocity)
+         end(col_sphere) = limit(a%z(a%steps), b%z(b%steps))
+         end(col_indentation) = end(col_sphere)
+         call trajectory%add(end)
       end associate
       call share_impulse(trajectory)
       trajectory%status = contact_separated
@@ -67,7 +66,6 @@ contains
             course%velocity(0:n), course%radius(0:n))
          trajectory%steps = n
          trajectory%last = n
-         trajectory%final = n
          trajectory%status = contact_lasting
          if (course%rests(impact%mass*impact%gravity)) trajectory%status = contact_resting
          top = peak(course%force(0:n), course%dt)
@@ -92,20 +90,21 @@ contains
       !> Contact radius [m], same shape
       real(wp), intent(in) :: radius(0:)
 
+      real(wp) :: state(columns)
       integer :: i, n
 
       n = ubound(force, 1)
       call trajectory%reserve(n + 1)
-      trajectory%state = unset
+      state = unset
       do i = 0, n
-         trajectory%state(col_time, i) = real(i, wp)*dt
-         trajectory%state(col_force, i) = max(0.0_wp, force(i))
-         trajectory%state(col_sphere, i) = z(i)
-         trajectory%state(col_sphere_velocity, i) = velocity(i)
-         trajectory%state(col_impulse, i) = impact%mass &
-            *(impact%free_velocity(real(i, wp)*dt) - velocity(i))
+         state(col_time) = real(i, wp)*dt
+         state(col_force) = max(0.0_wp, force(i))
+         state([col_sphere, col_indentation]) = z(i)
+         state(col_sphere_velocity) = velocity(i)
+         state(col_impulse) = impact%mass*(impact%free_velocity(real(i, wp)*dt) - velocity(i))
+         if (i == 0) call trajectory%begin(state)
+         if (i > 0) call trajectory%add(state)
       end do
-      trajectory%state(col_indentation, :) = trajectory%state(col_sphere, :)
       allocate (trajectory%radius(0:n + 1), source=unset)
       trajectory%radius(0:n) = radius
    end subroutine fill

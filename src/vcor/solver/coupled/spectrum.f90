@@ -55,6 +55,7 @@ module vcor_solver_coupled_spectrum
       !> the lags; unallocated without waves
       complex(wp), allocatable :: passing(:, :)
    contains
+      procedure :: extend
       procedure :: suits
       procedure, private :: add_panels
    end type spectrum_t
@@ -116,50 +117,70 @@ contains
          .and. all(abs(self%p - other%p) <= 0.0_wp)
    end function equals
 
-   !> Compute the response
-   pure subroutine new_spectrum(self, face, moduli, radius, last)
+   !> Begin a spectrum without wavenumbers
+   pure subroutine new_spectrum(self, face, moduli, radius)
       type(spectrum_t), intent(out) :: self
       type(face_t), intent(in) :: face
       !> The face at the frequencies of the march
       type(moduli_t), intent(in) :: moduli
       !> Radius of the row of springs [m]
       real(wp), intent(in) :: radius
-      !> Wavenumber up to which the response is needed [1/m]
-      real(wp), intent(in) :: last
 
-      complex(wp), allocatable :: passing(:)
-      real(wp), allocatable :: k(:)
-      real(wp) :: node(panel_nodes), share(panel_nodes)
-      integer :: frequencies, i, l
+      integer :: frequencies
 
       self%moduli = moduli
       self%radius = radius
-      allocate (passing, source=passing_nodes(face, moduli))
-      call self%add_panels(face, [moduli%p, passing], last)
-      call gauss_nodes(node, share)
-      allocate (k, source=[(self%start(i) + self%length(i)*node, i=1, size(self%start))])
       frequencies = moduli%steps/2
       if (.not. face%has_waves) frequencies = 0
-      allocate (self%excess(size(k), 0:frequencies))
-      do l = 0, frequencies
-         call face%response(k, moduli%p(l), self%excess(:, l))
-      end do
-      if (.not. face%has_waves) return
-      allocate (self%passing(size(k), 0:size(passing) - 1))
-      do l = 0, size(passing) - 1
-         call face%half_space_response(k, passing(l + 1), self%passing(:, l))
-      end do
+      allocate (self%start(0), self%length(0), self%excess(0, 0:frequencies))
+      if (face%has_waves) &
+         allocate (self%passing(0, 0:size(passing_nodes(face, moduli)) - 1))
    end subroutine new_spectrum
 
-   !> Whether the response is that of a face at the frequencies of a march up to a wavenumber
-   pure function suits(self, moduli, radius, last)
+   !> Compute the response up to a wavenumber. Panels and nodes do not depend on how far it has been
+   !> known before
+   pure subroutine extend(self, face, last)
+      class(spectrum_t), intent(inout) :: self
+      type(face_t), intent(in) :: face
+      !> Wavenumber up to which the response is needed [1/m]
+      real(wp), intent(in) :: last
+
+      complex(wp), allocatable :: passing(:), excess(:, :)
+      real(wp), allocatable :: k(:)
+      real(wp) :: node(panel_nodes), share(panel_nodes)
+      integer :: i, known, l
+
+      if (self%last >= last) return
+      known = size(self%start)
+      allocate (passing, source=passing_nodes(face, self%moduli))
+      call self%add_panels(face, [self%moduli%p, passing], last)
+      call gauss_nodes(node, share)
+      allocate (k, source=[(self%start(i) + self%length(i)*node, i=known + 1, size(self%start))])
+      known = panel_nodes*known
+      allocate (excess(known + size(k), 0:ubound(self%excess, 2)))
+      do l = 0, ubound(excess, 2)
+         excess(:known, l) = self%excess(:, l)
+         call face%response(k, self%moduli%p(l), excess(known + 1:, l))
+      end do
+      call move_alloc(excess, self%excess)
+      if (.not. face%has_waves) return
+      allocate (excess(known + size(k), 0:ubound(self%passing, 2)))
+      do l = 0, ubound(excess, 2)
+         excess(:known, l) = self%passing(:, l)
+         call face%half_space_response(k, passing(l + 1), excess(known + 1:, l))
+      end do
+      call move_alloc(excess, self%passing)
+   end subroutine extend
+
+   !> Whether the response is that of a face at the frequencies of a march
+   pure function suits(self, moduli, radius)
       class(spectrum_t), intent(in) :: self
       type(moduli_t), intent(in) :: moduli
-      !> Radius of the row of springs [m] and the wavenumber [1/m]
-      real(wp), intent(in) :: radius, last
+      !> Radius of the row of springs [m]
+      real(wp), intent(in) :: radius
       logical :: suits
 
-      suits = .not. abs(self%radius - radius) > 0.0_wp .and. self%last >= last
+      suits = allocated(self%excess) .and. .not. abs(self%radius - radius) > 0.0_wp
       if (suits) suits = self%moduli%equals(moduli)
    end function suits
 
@@ -183,8 +204,8 @@ contains
       p = nodes(lags, 1.0_wp/rate)*(real(face%per_shear_speed(cmplx(rate, kind=wp)), wp)/rate)
    end function passing_nodes
 
-   !> Divide the wavenumbers into panels, short where the response of any frequency has a pole
-   !> nearby and where a layer resonates.
+   !> Divide the wavenumbers from the last panel on into panels, short where the response of any
+   !> frequency has a pole nearby and where a layer resonates.
    !>
    !> A panel over which the products of hats are integrated at once integrates the response to
    !> twice as many digits as a polynomial through its nodes has. A longer one has the response as
@@ -210,8 +231,7 @@ contains
       else
          least = 1.0_wp/face%thickness
       end if
-      allocate (self%start(0), self%length(0))
-      start = 0.0_wp
+      start = self%last
       do while (start < last)
          length = 0.5_wp*least
          if (start > 0.0_wp) length = min(growth(1)*max(start, least), near(1)*clearance(start))

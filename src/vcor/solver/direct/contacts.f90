@@ -1,13 +1,10 @@
 !> Impacts on a structure by product integration, through contact, flight and further contacts
 !>
 !> A structure comes back: after the first separation it may strike the sphere again, and the first
-!> separation then means nothing. The steps are equal. The force is a parabola over each step;
-!> sphere and modes follow it exactly (`vcor_solver_direct_modes`), and the springs of the contact
-!> keep the dent (`vcor_solver_direct_row`), so that contact, flight and the next contact are one
-!> formula. In each step s = s_0 - c F and F = stiffness*value(s), which rises with s, have one
-!> solution. Where a contact begins or ends within a step the force is not smooth, ~ tau^n, and the
-!> error falls as dt^(n+1), or as dt^2 for materials that relax. N steps take N times the modes and
-!> springs.
+!> separation then means nothing. The steps are equal, and contact, flight and the next contact are
+!> one formula (`vcor_solver_direct_run`). Where a contact begins or ends within a step the force is
+!> not smooth, ~ tau^n, and the error falls as dt^(n+1), or as dt^2 for materials that relax. N
+!> steps take N times the modes and springs.
 !>
 !> The sphere has left where the structure cannot reach it any more (`vcor_impact_structure`). What
 !> touches before that counts, also under gravity.
@@ -15,19 +12,27 @@
 !> A contact that is just made or just missed is not known better than the velocity of the impact.
 !> Impacts with velocities next to it show what it changes: the results depend smoothly on the
 !> velocity, to first order along a line, but where the number of contacts changes.
+!>
+!> With its weight the sphere comes back: further bounces begin where a flight ends
+!> (`vcor_solver_direct_flight`), in steps that are the same share of the time that an elastic
+!> contact at their velocity takes. On a face without a structure each separation ends a bounce.
 module vcor_solver_direct_contacts
    use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_bounces, only : bounce_t, bounces_t, ends_contact, ends_count, ends_error, &
+      ends_rest, ends_time
+   use vcor_impact_creep, only : in_order, spectrum_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_structure, only : state_of_modes_t, vibration_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
-      contact_lasting, contact_resting, contact_separated, contact_unknown, trajectory_t
+      contact_lasting, contact_resting, contact_separated, contact_unknown, trajectory_t, unrest
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_direct_evaluation, only : fall_of, parabola
-   use vcor_solver_direct_modes, only : modes_t
-   use vcor_solver_direct_row, only : row_t
+   use vcor_solver_direct_flight, only : fly
+   use vcor_solver_direct_recovery, only : recovery_t
+   use vcor_solver_direct_run, only : run_t
    use vcor_solver_ringing, only : ringing_t
    use vcor_solver_type, only : solver_settings_t
    use vcor_tuning, only : direct_first_steps, direct_most_work, sum_share, sum_window
@@ -44,45 +49,6 @@ module vcor_solver_direct_contacts
    integer, parameter :: reach_steps = 64
    !> Relative distance of the velocities next to that of the impact
    real(wp), parameter :: next_to = 1.0e-6_wp
-   !> Multiplications in the time that a step takes besides those for modes and springs
-   real(wp), parameter :: work_of_step = 300.0_wp
-   !> Weights of the newest node, the one before and that before it, for integrals over a step
-   real(wp), parameter :: rule(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
-
-   !> A run with a given time step, at its newest node
-   type :: run_t
-      !> Time step, time at which the run begins [s], and number of steps
-      real(wp) :: dt = 0.0_wp, start = 0.0_wp
-      integer :: steps = 0
-      !> Modes of the structure and springs of the contact
-      type(modes_t) :: modes
-      type(row_t) :: row
-      !> Whether no mode is a rigid motion, nor a part a flow
-      logical :: is_held = .false.
-      !> Flexibility that follows at once [m/N]
-      real(wp) :: residual = 0.0_wp
-      !> Time [s], indentation [m], impulse [N s] and its integral [N s2]
-      real(wp) :: t = 0.0_wp, s = 0.0_wp, impulse = 0.0_wp, second_impulse = 0.0_wp
-      !> What the last two are short of their sums, by rounding
-      real(wp) :: rest(2) = 0.0_wp
-      !> Force at the newest node and at the two before [N]; 0 before one that is 0
-      real(wp) :: force(3) = 0.0_wp
-      !> s less the surface of the dent, at the newest node and the two before [m]
-      real(wp) :: depth(3) = 0.0_wp
-      !> Force times the velocity of the contact and of the structure, at the same nodes [W], and
-      !> the integrals of both [J]
-      real(wp) :: power(2, 3) = 0.0_wp, work(2) = 0.0_wp
-      !> Last three indentations [m]
-      real(wp) :: last_s(3) = 0.0_wp
-      !> Multiplications so far
-      real(wp) :: effort = 0.0_wp
-   contains
-      procedure :: begin
-      procedure :: take_step
-      procedure :: node
-      procedure :: sphere_velocity
-      procedure :: sphere
-   end type run_t
 
 contains
 
@@ -100,13 +66,20 @@ contains
       real(wp), parameter :: share = 0.2_wp
       type(vibration_t) :: vibration
       type(exponential_sum_t) :: terms
+      type(recovery_t) :: recovery
       type(trajectory_t) :: near
       type(impact_t) :: other
-      real(wp) :: dt, shortest, window, effort, value(3, 6), beside(2, 4), thousandth
+      type(solver_settings_t) :: once
+      type(bounces_t) :: bounces(3)
+      real(wp) :: dt, dearer, shortest, window, effort, value(3, 6), beside(2, 4), thousandth
       logical :: given, exact, short_enough
       integer :: level, side
 
       given = settings%time_step > 0.0_wp
+      ! effort of a run with half of the step over that of this one, at most: half as long steps
+      ! touch twice as many springs
+      dearer = 3.0_wp
+      if (settings%bounces > 1 .and. impact%law%receding) dearer = 5.0_wp
       dt = impact%law%contact_time/real(direct_first_steps, wp)*impact%time_scale()
       shortest = dt/64.0_wp
       if (given) dt = 4.0_wp*settings%time_step
@@ -118,15 +91,17 @@ contains
       thousandth = 0.0_wp
       do
          level = level + 1
-         call march(settings, impact, terms, vibration, dt, trajectory, effort, error)
+         call march(settings, impact, terms, vibration, recovery, dt, trajectory, effort, error)
          if (allocated(error)) return
-         if (.not. exact .and. trajectory%state(col_time, trajectory%last) > window) then
-            window = 4.0_wp*trajectory%state(col_time, trajectory%last)
+         if (.not. exact .and. end_of(trajectory) > window) then
+            window = 4.0_wp*end_of(trajectory)
             call find_sums()
             if (allocated(error)) return
             level = 0
             cycle
          end if
+         bounces = [bounces(2:), bounces_t()]
+         if (allocated(trajectory%bounces)) bounces(3) = trajectory%bounces
          value = cshift(value, 1, 1)
          value(3, :) = [results_of(trajectory, impact), &
             trajectory%first_end, trajectory%max_force, trajectory%max_indentation, &
@@ -135,7 +110,7 @@ contains
             ! steps that are too long let the sphere hop from node to node, half as far with half of
             ! the step; contacts that are real stay where they are
             if (last(trajectory, col_time) > 0.75_wp*thousandth .and. thousandth > 0.0_wp &
-                .or. 3.0_wp*effort > direct_most_work .or. dt < shortest) then
+                .or. dearer*effort > direct_most_work .or. dt < shortest) then
                call raise(error, error_numerical, 'the sphere has struck the structure a ' &
                   //'thousand times and is still within its reach')
                return
@@ -143,12 +118,13 @@ contains
             thousandth = last(trajectory, col_time)
             level = 0
          else if (trajectory%status /= contact_separated) then
-            if (level >= 3 .or. 3.0_wp*effort > direct_most_work) return
+            if (level >= 3 .or. dearer*effort > direct_most_work) return
          else if (level >= 3) then
             call set_errors()
+            if (allocated(trajectory%bounces)) call set_errors_of_bounces()
             if (given) exit
             if (short_enough) exit
-            if (3.0_wp*effort > direct_most_work) then
+            if (dearer*effort > direct_most_work) then
                if (trajectory%misses_by_far()) call raise(error, error_numerical, 'the ' &
                   //'accuracy asked for is out of reach of product integration: give a larger ' &
                   //'solver.accuracy')
@@ -158,12 +134,15 @@ contains
          dt = 0.5_wp*dt
       end do
       if (allocated(error)) return
+      if (allocated(trajectory%bounces)) call leave_out_unknown(trajectory)
       if (trajectory%contacts == 1 .and. .not. trajectory%just_missed) return
+      once = settings
+      once%bounces = 1
       do side = 1, 2
          other = impact
          other%velocity = impact%velocity*(1.0_wp + real(2*side - 3, wp)*next_to)
          ! with longer steps the number of contacts would change at another velocity
-         call march(settings, other, terms, vibration, dt, near, effort, error)
+         call march(once, other, terms, vibration, recovery, dt, near, effort, error)
          if (allocated(error)) return
          beside(side, :) = [results_of(near, other), near%first_end, real(near%contacts, wp)]
       end do
@@ -207,9 +186,50 @@ contains
                //'of this contact')
             return
          end if
-         call impact%target%structure%expand(window, brief, accuracy, vibration, error)
+         if (impact%target%structure%exists()) then
+            call impact%target%structure%expand(window, brief, accuracy, vibration, error)
+         else
+            call vibration%make_none()
+         end if
          exact = .not. max(terms%error, vibration%error) > 0.0_wp
+         if (settings%bounces == 1 .or. allocated(error)) return
+         if (any(terms%moduli < 0.0_wp)) then
+            call raise(error, error_numerical, 'the kernel of this contact is a sum of ' &
+               //'exponentials of either sign, whose dent is not followed through a flight: ' &
+               //"expected impact.bounces = 1, or another contact.pair")
+            return
+         end if
+         call sort(terms)
+         call recovery%prepare(terms)
       end subroutine find_sums
+
+      !> Errors of the bounces from the last three runs, with those of the sums. The energy that is
+      !> left depends smoothly on everything, where a bounce is just made too: a bounce is known
+      !> where cor^2 is
+      subroutine set_errors_of_bounces()
+
+         type(richardson_t) :: found
+         real(wp) :: of_sums
+         integer :: n, known
+
+         of_sums = terms%error + vibration%error
+         known = minval(bounces%count)
+         associate (new => trajectory%bounces)
+            do n = 1, new%count
+               associate (bounce => new%list(n))
+                  bounce%cor_error = bounce%cor
+                  if (n <= known) then
+                     found = richardson([bounces(1)%list(n)%cor, bounces(2)%list(n)%cor, &
+                        bounce%cor])
+                     bounce%cor_error = found%error + of_sums
+                  end if
+                  short_enough = short_enough .and. miss_of(bounce) <= share*settings%accuracy
+               end associate
+            end do
+            found = richardson(bounces%total_time)
+            new%total_time_error = found%error + of_sums*new%total_time
+         end associate
+      end subroutine set_errors_of_bounces
 
       !> Errors of the results from the last three runs, with those of the sums, and whether steps
       !> are short enough
@@ -282,13 +302,67 @@ contains
       value = trajectory%state(column, trajectory%last)
    end function last
 
+   !> Merge exponentials of one rate, in the order of their rates
+   pure subroutine sort(terms)
+      type(exponential_sum_t), intent(inout) :: terms
+
+      type(spectrum_t) :: spectrum
+
+      spectrum = in_order(terms)
+      terms%rates = spectrum%rate(1:)
+      terms%moduli = spectrum%modulus(1:)
+   end subroutine sort
+
+   !> Time at which a run has ended
+   pure function end_of(trajectory) result(time)
+      type(trajectory_t), intent(in) :: trajectory
+      !> Time [s]
+      real(wp) :: time
+
+      time = last(trajectory, col_time)
+      if (allocated(trajectory%bounces)) time = max(time, trajectory%bounces%total_time)
+   end function end_of
+
+   !> Error of a bounce that counts, that of cor^2
+   pure function miss_of(bounce) result(error)
+      type(bounce_t), intent(in) :: bounce
+      !> Error [-]
+      real(wp) :: error
+
+      error = min(1.0_wp, 2.0_wp*bounce%cor)*bounce%cor_error
+   end function miss_of
+
+   !> Leave out bounces that are not known
+   pure subroutine leave_out_unknown(trajectory)
+      type(trajectory_t), intent(inout) :: trajectory
+
+      ! as `misses_by_far` of a trajectory has it
+      real(wp), parameter :: far = 100.0_wp
+      integer :: n
+
+      if (.not. trajectory%accuracy > 0.0_wp) return
+      associate (bounces => trajectory%bounces)
+         do n = 1, bounces%count
+            if (miss_of(bounces%list(n)) <= far*trajectory%accuracy) cycle
+            bounces%count = n - 1
+            bounces%ending = ends_error
+            bounces%total_time = 0.0_wp
+            if (n > 1) bounces%total_time = bounces%list(n - 1)%separation
+            bounces%total_time_error = unset
+            exit
+         end do
+      end associate
+   end subroutine leave_out_unknown
+
    !> Compute one run with a given time step
-   subroutine march(settings, impact, terms, vibration, dt, trajectory, effort, error)
+   subroutine march(settings, impact, terms, vibration, recovery, dt, trajectory, effort, error)
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Kernel of the contact
       type(exponential_sum_t), intent(in) :: terms
       type(vibration_t), intent(in) :: vibration
+      !> Recovery of dents, of use for several bounces
+      type(recovery_t), intent(in) :: recovery
       !> Time step [s]
       real(wp), intent(in) :: dt
       type(trajectory_t), intent(out) :: trajectory
@@ -297,9 +371,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(run_t) :: run
-      real(wp) :: end_time, reach
-      integer :: stride, flown
-      logical :: pressed
+      real(wp) :: end_time
+      integer :: stride
 
       end_time = settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
@@ -307,18 +380,58 @@ contains
       call trajectory%reserve(1024)
       trajectory%state(:, 0) = run%node(impact)
       trajectory%share(0) = 0.0_wp
-      trajectory%contacts = 0
       stride = 1
+      call follow(settings, impact, vibration, end_time, run, stride, trajectory, error)
+      effort = run%effort
+      if (allocated(error)) return
+      trajectory%steps = run%steps
+      if (trajectory%status == contact_separated) then
+         ! the history ends with the last contact
+         trajectory%final = count(trajectory%state(col_time, 1:trajectory%final) &
+            < trajectory%separation(col_time))
+         call store(trajectory%separation, trajectory, stride)
+         if (settings%bounces > 1) call bounce_on(settings, impact, terms, vibration, recovery, &
+            run, trajectory, error)
+         effort = run%effort
+         return
+      end if
+      call store(run%node(impact), trajectory, stride)
+      if (trajectory%status == contact_lasting .and. .not. settings%end_time > 0.0_wp &
+          .and. .not. run%force(1) > 0.0_wp) call raise(error, error_numerical, &
+         'the sphere stays within the reach of the structure, without damping for ever: give a ' &
+         //'damping, or solver.end_time')
+   end subroutine march
+
+   !> Follow a bounce until the sphere has left, or stays
+   subroutine follow(settings, impact, vibration, end_time, run, stride, trajectory, error)
+      type(solver_settings_t), intent(in) :: settings
+      type(impact_t), intent(in) :: impact
+      type(vibration_t), intent(in) :: vibration
+      !> End of the run [s]
+      real(wp), intent(in) :: end_time
+      type(run_t), intent(inout) :: run
+      !> Number of steps between two nodes that are stored
+      integer, intent(inout) :: stride
+      !> The course of the bounce
+      type(trajectory_t), intent(inout) :: trajectory
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: reach
+      integer :: flown
+      logical :: pressed
+
+      trajectory%contacts = 0
       flown = 0
       reach = huge(1.0_wp)
       do
          pressed = run%force(1) > 0.0_wp
          call run%take_step(impact)
-         effort = run%effort
          call find_peaks(run, trajectory)
+         if (.not. pressed .and. run%force(1) > 0.0_wp .and. trajectory%contacts == 0) &
+            trajectory%touch = touch_of(run, impact)
          if (pressed .and. .not. run%force(1) > 0.0_wp .and. run%steps > 1) then
             call separate(run, impact, vibration, trajectory)
-            if (settings%first_contact) then
+            if (settings%first_contact .or. run%is_face) then
                trajectory%status = contact_separated
                exit
             end if
@@ -339,155 +452,107 @@ contains
                exit
             end if
          else if (impact%gravity > 0.0_wp) then
-            if (is_at_rest(run, impact)) then
+            if (is_at_rest(run, impact) .or. settings%bounces > 1 &
+                .and. is_held_down(run, impact, vibration)) then
                trajectory%status = contact_resting
                exit
             end if
          end if
          if (run%t > end_time) exit
-         if (effort > direct_most_work) then
+         if (run%effort > direct_most_work) then
+            if (settings%bounces > 1) then
+               call raise(error, error_numerical, 'the bounces asked for take more steps than ' &
+                  //'product integration can make: give a smaller impact.bounces, or a larger ' &
+                  //'solver.accuracy')
+               return
+            end if
             call raise(error, error_numerical, 'the sphere does not get out of the reach of the ' &
                //'structure within the steps that product integration can make')
             return
          end if
       end do
-      trajectory%steps = run%steps
-      if (trajectory%status == contact_separated) then
-         ! the history ends with the last contact
-         trajectory%final = count(trajectory%state(col_time, 1:trajectory%final) &
-            < trajectory%separation(col_time))
-         call store(trajectory%separation, trajectory, stride)
-         return
-      end if
-      call store(run%node(impact), trajectory, stride)
-      if (trajectory%status == contact_lasting .and. .not. settings%end_time > 0.0_wp &
-          .and. .not. run%force(1) > 0.0_wp) call raise(error, error_numerical, &
-         'the sphere stays within the reach of the structure, without damping for ever: give a ' &
-         //'damping, or solver.end_time')
-   end subroutine march
+   end subroutine follow
 
-   !> Begin a run at first contact
-   subroutine begin(self, impact, terms, vibration, dt)
-      class(run_t), intent(out) :: self
+   !> Follow the bounces after the first one
+   subroutine bounce_on(settings, impact, terms, vibration, recovery, run, trajectory, error)
+      type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Kernel of the contact
       type(exponential_sum_t), intent(in) :: terms
       type(vibration_t), intent(in) :: vibration
-      !> Time step [s]
-      real(wp), intent(in) :: dt
+      type(recovery_t), intent(in) :: recovery
+      !> The run, where the sphere has left after the first bounce
+      type(run_t), intent(inout) :: run
+      !> The course of the first bounce
+      type(trajectory_t), intent(inout) :: trajectory
+      type(error_t), allocatable, intent(out) :: error
 
-      self%dt = dt
-      self%residual = vibration%residual
-      self%is_held = all(vibration%square > 0.0_wp) .and. all(vibration%rate > 0.0_wp)
-      call self%modes%prepare(vibration, dt)
-      call self%row%prepare(terms, impact%law, dt, 0.0_wp)
-      if (.not. self%residual > 0.0_wp) self%force(1) = impact%first_force()
-   end subroutine begin
+      type(impact_t) :: here
+      type(trajectory_t) :: course
+      type(bounces_t) :: bounces
+      real(wp) :: share, origin, flown, end_time
+      integer :: stride
 
-   !> Advance to the next node
-   subroutine take_step(self, impact)
-      class(run_t), intent(inout) :: self
+      here = impact
+      share = run%dt/(impact%law%contact_time*impact%time_scale())
+      origin = 0.0_wp
+      course = trajectory
+      course%touch = [0.0_wp, impact%velocity]
+      do
+         call bounces%add(bounce_of(run, here, course, origin))
+         if (bounces%count == settings%bounces) then
+            bounces%ending = ends_count
+            bounces%total_time = bounces%list(bounces%count)%separation
+            exit
+         end if
+         origin = origin + run%t
+         call fly(run, here, terms, vibration, recovery, share, flown)
+         origin = origin + flown
+         end_time = here%patience(here%time_scale())
+         if (settings%end_time > 0.0_wp) end_time = settings%end_time - origin
+         if (.not. end_time > 0.0_wp) then
+            bounces%ending = ends_time
+            bounces%total_time = settings%end_time
+            exit
+         end if
+         course = trajectory_t()
+         stride = huge(stride)
+         call follow(settings, here, vibration, end_time, run, stride, course, error)
+         if (allocated(error)) return
+         if (course%status == contact_separated) cycle
+         trajectory%status = merge(contact_unknown, contact_separated, &
+            course%status == contact_unknown)
+         bounces%total_time = origin + course%touch(1)
+         bounces%ending = merge(ends_rest, ends_contact, course%status == contact_resting)
+         if (settings%end_time > 0.0_wp .and. course%status == contact_lasting) then
+            bounces%ending = ends_time
+            bounces%total_time = settings%end_time
+         end if
+         exit
+      end do
+      trajectory%bounces = bounces
+   end subroutine bounce_on
+
+   !> What is known of a bounce
+   pure function bounce_of(run, impact, course, origin) result(bounce)
+      !> The run, where the sphere has left
+      type(run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(in) :: course
+      !> Time at which the run began [s]
+      real(wp), intent(in) :: origin
+      type(bounce_t) :: bounce
 
-      integer, parameter :: most_iterations = 60
-      real(wp) :: known, per_force, value, slope, s, change, force, velocity, bend
-      integer :: iteration
-
-      self%steps = self%steps + 1
-      call self%modes%advance(self%force(2))
-      call self%row%find_levels()
-      associate (dt => self%dt, f => self%force)
-         ! a sum of equal steps would be off by the same rounding in each of them
-         self%t = self%start + real(self%steps, wp)*dt
-         known = self%second_impulse + dt*self%impulse + dt**2*(10.0_wp*f(1) - f(2))/24.0_wp
-         per_force = 0.125_wp*dt**2/impact%mass + self%modes%yield + self%residual
-         s = impact%free_path(self%t) - known/impact%mass - self%modes%deflection()
-         known = s
-         ! the force is convex in s: after one of Newton's steps the others fall towards the root
-         do iteration = 1, most_iterations
-            call self%row%press(impact%law, s, value, slope)
-            change = (s - known + per_force*self%row%stiffness*value) &
-               /(1.0_wp + per_force*self%row%stiffness*slope)
-            s = s - change
-            if (abs(change) <= 4.0_wp*epsilon(s)*max(abs(s), abs(known))) exit
-         end do
-         call self%row%press(impact%law, s, value, slope)
-         force = self%row%stiffness*value
-         self%depth = [s - self%row%surface(impact%law), self%depth(1), self%depth(2)]
-         call self%row%accept(impact%law, s, s - self%s)
-         call self%modes%accept(force)
-         bend = force - 2.0_wp*f(1) + f(2)
-         if (.not. max(force, f(1)) > 0.0_wp) bend = 0.0_wp
-         call add(self%second_impulse, self%rest(2), dt*(self%impulse + self%rest(1)) &
-            + dt**2*(f(1)/3.0_wp + force/6.0_wp - bend/24.0_wp))
-         call add(self%impulse, self%rest(1), dt*(0.5_wp*(f(1) + force) - bend/12.0_wp))
-         self%last_s = [s, self%last_s(1), self%last_s(2)]
-         self%s = s
-         f = [force, f(1), f(2)]
-         if (.not. force > 0.0_wp) f(2:) = 0.0_wp
-         velocity = 0.0_wp
-         if (force > 0.0_wp) velocity = self%modes%rate()
-         self%power(:, 2:3) = self%power(:, 1:2)
-         self%power(:, 1) = force*[self%sphere_velocity(impact) - velocity, velocity]
-         if (any(abs(self%power(2, :)) > 0.0_wp)) self%work = self%work &
-            + dt*matmul(self%power, rule)
-         self%effort = self%effort + work_of_step + self%modes%work &
-            + real(self%row%count*(20 + 4*self%row%modes()), wp)
-      end associate
-   end subroutine take_step
-
-   !> Add to a sum, and keep what rounding takes from it for the next time (W. Kahan, Commun. ACM 8
-   !> (1965) 40, doi:10.1145/363707.363723)
-   pure subroutine add(total, rest, part)
-      !> The sum, and what it is short of
-      real(wp), intent(inout) :: total, rest
-      !> What is added
-      real(wp), intent(in) :: part
-
-      real(wp) :: more, last
-
-      more = part + rest
-      last = total
-      total = last + more
-      rest = more - (total - last)
-   end subroutine add
-
-   !> Velocity of the sphere [m/s]
-   pure function sphere_velocity(self, impact) result(velocity)
-      class(run_t), intent(in) :: self
-      type(impact_t), intent(in) :: impact
-      real(wp) :: velocity
-
-      velocity = impact%free_velocity(self%t) - self%impulse/impact%mass
-   end function sphere_velocity
-
-   !> Displacement of the sphere [m]
-   pure function sphere(self, impact) result(place)
-      class(run_t), intent(in) :: self
-      type(impact_t), intent(in) :: impact
-      real(wp) :: place
-
-      place = impact%free_path(self%t) - self%second_impulse/impact%mass
-   end function sphere
-
-   !> State at the node
-   pure function node(self, impact) result(state)
-      class(run_t), intent(in) :: self
-      type(impact_t), intent(in) :: impact
-      !> State
-      real(wp) :: state(columns)
-
-      state(col_time) = self%t
-      state(col_indentation) = self%s
-      state(col_force) = self%force(1)
-      state(col_impulse) = self%impulse
-      state(col_sphere) = self%sphere(impact)
-      state(col_sphere_velocity) = self%sphere_velocity(impact)
-      state(col_plate) = state(col_sphere) - self%s
-      state(col_plate_velocity) = self%modes%rate() + self%residual*(1.5_wp*self%force(1) &
-         - 2.0_wp*self%force(2) + 0.5_wp*self%force(3))/self%dt
-      state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
-   end function node
+      bounce%time = origin + course%touch(1)
+      bounce%velocity = course%touch(2)
+      bounce%cor = -course%separation(col_sphere_velocity)/bounce%velocity
+      bounce%separation = origin + course%separation(col_time)
+      bounce%height = 0.5_wp*run%sphere_velocity(impact)**2/impact%gravity &
+         - (run%sunk + run%sphere(impact))
+      bounce%contacts = course%contacts
+      bounce%max_force = course%max_force
+      bounce%max_indentation = course%max_indentation
+   end function bounce_of
 
    !> Store a node; where there are too many, every second one is left out
    subroutine store(state, trajectory, stride)
@@ -512,6 +577,20 @@ contains
       trajectory%last = trajectory%final
    end subroutine store
 
+   !> Time and velocity of the sphere at a touch in the newest step
+   pure function touch_of(run, impact) result(touch)
+      type(run_t), intent(in) :: run
+      type(impact_t), intent(in) :: impact
+      !> Time [s] and velocity [m/s]
+      real(wp) :: touch(2)
+
+      touch = 0.0_wp
+      if (.not. run%is_face) &
+         touch(1) = run%t - (1.0_wp - fall_of(-run%depth(3:1:-1)))*run%dt
+      ! there has been no force before
+      touch(2) = impact%free_velocity(touch(1))
+   end function touch_of
+
    !> Record the end of a contact in the newest step: where s meets the surface of the dent
    subroutine separate(run, impact, vibration, trajectory)
       type(run_t), intent(in) :: run
@@ -524,6 +603,10 @@ contains
 
       x = fall_of(run%depth(3:1:-1))
       back = (1.0_wp - x)*run%dt
+      if (run%is_face) then
+         back = run%behind
+         x = 1.0_wp - back/run%dt
+      end if
       trajectory%contacts = trajectory%contacts + 1
       if (trajectory%contacts == 1) then
          trajectory%first_end = run%t - back
@@ -601,6 +684,44 @@ contains
          abs(run%sphere_velocity(impact)) <= negligible*impact%velocity .and. &
          abs(run%modes%rate()) <= negligible*impact%velocity
    end function is_at_rest
+
+   !> Whether the energy that is left cannot lift the sphere off again, where the indentation is
+   !> largest (`rests` of a trajectory). On a structure of oscillators the energy of all deviations
+   !> from rest,
+   !>
+   !>     2 V = m v^2 + C_r (F - W)^2 + sum (eta'^2 + w^2 (eta - y W/w^2)^2)/y + (F - W)^2/(k u'),
+   !>
+   !> only falls, and lifts off a sphere if it is W^2/(k u') with the glassy k, or more
+   function is_held_down(run, impact, vibration) result(held)
+      type(run_t), intent(in) :: run
+      type(impact_t), intent(in) :: impact
+      type(vibration_t), intent(in) :: vibration
+      logical :: held
+
+      type(state_of_modes_t) :: modes
+      real(wp) :: weight, firmness, energy
+
+      held = .false.
+      associate (s => run%last_s)
+         if (.not. (run%steps > 2 .and. run%force(1) > 0.0_wp .and. s(2) >= s(1) &
+             .and. s(2) > s(3))) return
+      end associate
+      weight = impact%mass*impact%gravity
+      if (abs(run%force(1) - weight) >= weight) return
+      if (run%is_face) then
+         held = unrest(impact, run%node(impact)) < 1.0_wp
+         return
+      end if
+      firmness = impact%factor*impact%modulus%glassy()
+      if (size(vibration%rate) > 0 .or. impact%kernel_viscosity() > 0.0_wp &
+          .or. .not. firmness <= huge(1.0_wp)) return
+      modes = run%modes%state()
+      energy = impact%mass*run%sphere_velocity(impact)**2 &
+         + vibration%residual*(run%force(1) - weight)**2 + sum((modes%rate**2 &
+         + vibration%square*(modes%eta - vibration%yield*weight/vibration%square)**2) &
+         /vibration%yield)
+      held = firmness*impact%law%slope(run%s)*energy + (run%force(1) - weight)**2 < weight**2
+   end function is_held_down
 
    !> Find the largest indentation and force by the parabola through the last three nodes
    pure subroutine find_peaks(run, trajectory)

@@ -99,7 +99,7 @@ contains
       integer :: level, room
       logical :: crude
 
-      if (impact%target%structure%exists()) then
+      if (impact%target%structure%exists() .or. self%settings%bounces > 1) then
          call solve_contacts(self%settings, impact, trajectory, error)
          return
       end if
@@ -226,11 +226,12 @@ contains
       run%speed = impact%velocity
       run%motion%alpha = impact%target%alpha(0.0_wp)
       call make_room(run, impact, dt, room, trajectory)
-      trajectory%state(:, 0) = 0.0_wp
-      trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
-      trajectory%state(col_force, 0) = impact%first_force()
-      trajectory%state(col_plate_velocity, 0) = impact%target%alpha(0.0_wp)*impact%first_force()
-      trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
+      node = 0.0_wp
+      node(col_sphere_velocity) = impact%velocity
+      node(col_force) = impact%first_force()
+      node(col_plate_velocity) = impact%target%alpha(0.0_wp)*impact%first_force()
+      node(col_velocity) = impact%velocity - node(col_plate_velocity)
+      call trajectory%begin(node)
       crude = .false.
       work = 0.0_wp
       n = 0
@@ -272,8 +273,7 @@ contains
             return
          end if
          node = state_of(run, impact)
-         trajectory%final = trajectory%final + 1
-         trajectory%state(:, trajectory%final) = node
+         call trajectory%add(node)
          if (trajectory%status == contact_separated) then
             if (node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp)) exit
             cycle
@@ -302,8 +302,7 @@ contains
          else if (ends) then
             trajectory%status = contact_separated
             if (.not. settings%ghost) exit
-            trajectory%final = n + 1
-            trajectory%state(:, n + 1) = node
+            call trajectory%add(node)
             if (.not. settings%end_time > 0.0_wp) end_time = 2.0_wp*node(col_time)
          else if (node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp)) then
             exit

@@ -14,6 +14,7 @@ module vcor_solver_direct_row
    use vcor_impact_law, only : contact_law_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_solver_direct_recovery, only : recovery_t
    implicit none
    private
 
@@ -25,13 +26,16 @@ module vcor_solver_direct_row
       logical, private :: recedes = .false.
       !> Whether only that of the row which is touched first is followed
       logical, private :: alone = .false.
-      !> Force over the compression of the last step, phi = stiffness (w - level) [N/m^1.5]
+      !> Force over the compression of the last step, phi = stiffness (w - level) [N/m^1.5], of all,
+      !> or of all but the dashpot
       real(wp) :: stiffness = 0.0_wp
       !> Equilibrium modulus and viscosity over the time step [N/m^1.5]
       real(wp), private :: equilibrium = 0.0_wp, drag = 0.0_wp
       !> Moduli G_k [N/m^1.5], decays exp(-l_k dt), and weights of the change of w over a step, and
       !> of that over the step before, in the lags, shape (modes)
       real(wp), allocatable, private :: modulus(:), decay(:), weight(:), bend(:)
+      !> Rates times step l_k dt, and lags of one spring before the newest step, shape (modes)
+      real(wp), allocatable, private :: phase(:), before(:)
       !> Number of springs
       integer :: count = 0
       !> Indentation sigma at first touch [m], u and du/ds there, compression w, its last change,
@@ -43,11 +47,22 @@ module vcor_solver_direct_row
       real(wp), private :: spacing = 0.0_wp
    contains
       procedure :: prepare
+      procedure :: set_step
       procedure :: set
+      procedure :: recover
+      procedure :: recovery_of_first
+      procedure :: is_untouched
+      procedure :: begin_pressing
+      procedure :: elastic_force
+      procedure :: cut
+      procedure :: has_one_spring
+      procedure :: stiffness_without_dashpot
       procedure :: find_levels
       procedure :: press
       procedure :: accept
       procedure :: surface
+      procedure :: compression
+      procedure :: depth_of
       procedure :: modes
    end type row_t
 
@@ -65,27 +80,40 @@ contains
       real(wp), intent(in) :: spacing
 
       integer, parameter :: usual = 64
-      real(wp) :: x(size(terms%rates))
       integer :: room
 
       ! an elastic contact has one force whatever its past was
       self%recedes = law%receding .and. (size(terms%rates) > 0 .or. terms%viscosity > 0.0_wp)
       self%spacing = spacing
+      call self%set_step(terms, dt)
+      room = merge(usual, 1, self%recedes)
+      allocate (self%sigma(room), self%u(room), self%slope(room), self%w(room), self%change(room), &
+         self%level(room), self%lag(room, size(terms%rates)))
+      call touch(self, law, 0.0_wp, 0.0_wp)
+   end subroutine prepare
+
+   !> Set the length of the steps
+   subroutine set_step(self, terms, dt)
+      class(row_t), intent(inout) :: self
+      !> Kernel of the contact [N/m^1.5]
+      type(exponential_sum_t), intent(in) :: terms
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+
+      real(wp) :: x(size(terms%rates))
+
       self%equilibrium = terms%equilibrium
       self%drag = terms%viscosity/dt
       self%modulus = terms%moduli
       x = terms%rates*dt
+      self%phase = x
       self%decay = exp(-x)
       self%weight = part_of_step(x)
       ! int_0^1 exp(-x (1 - theta)) (theta - 1/2) dtheta
       self%bend = second_part(x) - 0.5_wp*self%weight
       self%stiffness = self%equilibrium + sum(self%modulus*(self%weight + self%bend)) &
          + 1.5_wp*self%drag
-      room = merge(usual, 1, self%recedes)
-      allocate (self%sigma(room), self%u(room), self%slope(room), self%w(room), self%change(room), &
-         self%level(room), self%lag(room, size(x)))
-      call touch(self, law, 0.0_wp, 0.0_wp)
-   end subroutine prepare
+   end subroutine set_step
 
    !> (1 - exp(-x))/x
    elemental function part_of_step(x) result(part)
@@ -176,15 +204,123 @@ contains
       self%lag(1, :) = lag
    end subroutine set
 
-   !> Find the levels at the next node
-   subroutine find_levels(self)
+   !> Let the dent recover in flight
+   subroutine recover(self, recovery, time)
       class(row_t), intent(inout) :: self
+      !> That of this kernel
+      type(recovery_t), intent(in) :: recovery
+      !> Time [s]
+      real(wp), intent(in) :: time
 
-      real(wp) :: rest
+      integer :: j
+
+      do j = 1, self%count
+         call recovery%advance(time, self%w(j), self%lag(j, :))
+      end do
+      self%change(:self%count) = 0.0_wp
+   end subroutine recover
+
+   !> Amplitudes of the motions of the free spring touched first, whose compression is their sum
+   pure function recovery_of_first(self, recovery) result(c)
+      class(row_t), intent(in) :: self
+      !> That of this kernel
+      type(recovery_t), intent(in) :: recovery
+      !> Amplitudes, shape (motions)
+      real(wp) :: c(size(recovery%rate))
+
+      c = recovery%motions_of(self%w(1), self%lag(1, :))
+   end function recovery_of_first
+
+   !> Whether nothing noticeable is left of a dent
+   pure function is_untouched(self, law, indentation)
+      class(row_t), intent(in) :: self
+      type(contact_law_t), intent(in) :: law
+      !> Indentation of the next contact [m]
+      real(wp), intent(in) :: indentation
+      logical :: is_untouched
+
+      ! share of that indentation, below which its force does not change
+      real(wp), parameter :: negligible = 1.0e-15_wp
+      real(wp) :: least
+
+      least = negligible*indentation
+      if (.not. self%recedes) least = negligible*law%u(indentation)
+      is_untouched = maxval(abs(self%w(:self%count))) <= least &
+         .and. all(abs(self%lag(:self%count, :)) <= least)
+   end function is_untouched
+
+   !> Begin a contact at a node, where a sphere meets a dent: what would have been pressed over a
+   !> step before it makes the first parabola straight
+   subroutine begin_pressing(self, law, s, travel)
+      class(row_t), intent(inout) :: self
+      type(contact_law_t), intent(in) :: law
+      !> Indentation, and its change over a step before [m]
+      real(wp), intent(in) :: s, travel
+
+      if (self%recedes) then
+         self%change(1) = travel
+      else
+         self%change(1) = law%slope(s)*travel
+      end if
+   end subroutine begin_pressing
+
+   !> Cut the newest step of one spring, over the rest of which it is straight
+   subroutine cut(self, w, part, start)
+      class(row_t), intent(inout) :: self
+      !> Compression at the end of the part [m^1.5]
+      real(wp), intent(in) :: w
+      !> Part of the step, 0 .. 1
+      real(wp), intent(in) :: part
+      !> Compression at its start [m^1.5]
+      real(wp), intent(in) :: start
+
+      self%w(1) = w
+      self%lag(1, :) = exp(-part*self%phase)*self%before &
+         + part_of_step(part*self%phase)*(w - start)
+   end subroutine cut
+
+   !> Whether the contact is one spring in u, as by Boltzmann's law
+   pure function has_one_spring(self)
+      class(row_t), intent(in) :: self
+      logical :: has_one_spring
+
+      has_one_spring = .not. self%recedes
+   end function has_one_spring
+
+   !> Force over the compression of the last step without the dashpot
+   pure function stiffness_without_dashpot(self) result(stiffness)
+      class(row_t), intent(in) :: self
+      !> Stiffness [N/m^1.5]
+      real(wp) :: stiffness
+
+      stiffness = self%equilibrium + sum(self%modulus*(self%weight + self%bend))
+   end function stiffness_without_dashpot
+
+   !> Force of all but the dashpot in one spring in u at the newest node
+   pure function elastic_force(self) result(force)
+      class(row_t), intent(in) :: self
+      !> Force [N]
+      real(wp) :: force
+
+      force = self%equilibrium*self%w(1) + sum(self%modulus*self%lag(1, :))
+   end function elastic_force
+
+   !> Find the levels at the next node
+   subroutine find_levels(self, with_dashpot)
+      class(row_t), intent(inout) :: self
+      !> Whether the force of the dashpot is included; absent: it is
+      logical, intent(in), optional :: with_dashpot
+
+      real(wp) :: rest, drag
       integer :: k, j
 
+      drag = self%drag
+      if (present(with_dashpot)) then
+         if (.not. with_dashpot) drag = 0.0_wp
+         self%stiffness = self%stiffness_without_dashpot() + 1.5_wp*drag
+      end if
       associate (n => self%count)
-         rest = sum(self%modulus*self%bend) + 0.5_wp*self%drag
+         rest = sum(self%modulus*self%bend) + 0.5_wp*drag
          do j = 1, n
             self%level(j) = self%equilibrium*self%w(j) - rest*self%change(j)
          end do
@@ -263,7 +399,10 @@ contains
       integer :: j, k
 
       x = s
-      if (.not. self%recedes) x = law%u(s)
+      if (.not. self%recedes) then
+         x = law%u(s)
+         self%before = self%lag(1, :)
+      end if
       do j = 1, self%count
          next = max(x, self%level(j)) - self%sigma(j)
          gained(j) = next - self%w(j)
@@ -288,8 +427,30 @@ contains
       !> Indentation [m]
       real(wp) :: s
 
-      s = self%level(1)
-      if (.not. self%recedes) s = law%inverse(max(0.0_wp, self%level(1)))
+      s = self%depth_of(law, self%level(1))
    end function surface
+
+   !> Indentation at which the spring touched first is as it is at the newest node
+   function compression(self, law) result(s)
+      class(row_t), intent(in) :: self
+      type(contact_law_t), intent(in) :: law
+      !> Indentation [m]
+      real(wp) :: s
+
+      s = self%depth_of(law, self%w(1))
+   end function compression
+
+   !> Indentation that compresses the spring touched first
+   function depth_of(self, law, w) result(s)
+      class(row_t), intent(in) :: self
+      type(contact_law_t), intent(in) :: law
+      !> Its compression
+      real(wp), intent(in) :: w
+      !> Indentation [m]
+      real(wp) :: s
+
+      s = w
+      if (.not. self%recedes) s = law%inverse(max(0.0_wp, w))
+   end function depth_of
 
 end module vcor_solver_direct_row

@@ -140,7 +140,7 @@ contains
       ! factors of the initial velocity that no solution exceeds
       real(wp), parameter :: fastest = 1.2_wp, fastest_ghost = 20.0_wp
       type(run_t) :: run
-      real(wp) :: end_time, limit, t
+      real(wp) :: end_time, limit, t, node(columns)
       integer :: n, room, crossing
       logical :: beyond_limit, ends
 
@@ -158,8 +158,9 @@ contains
       run%first_kernel = impact%kernel(t)
       run%first_alpha = impact%target%alpha(t)
       call make_room(run, settings, impact, room, trajectory)
-      trajectory%state(:, 0) = 0.0_wp
-      trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
+      node = 0.0_wp
+      node([col_velocity, col_sphere_velocity]) = impact%velocity
+      call trajectory%begin(node)
       limit = stable_damping(settings, impact, dt)
       beyond_limit = .false.
 
@@ -188,8 +189,7 @@ contains
             if (abs(sum(alternating*run%velocity)) > noticeable*impact%velocity) return
          end if
 
-         trajectory%final = n
-         trajectory%state(:, n) = state_of(run, impact, t)
+         call trajectory%add(state_of(run, impact, t))
          ends = t + dt > end_time*(1.0_wp + 1.0e-9_wp)
          if (crossing > 0) then
             if (n >= crossing + steps_beyond .and. (ends .or. .not. ghost)) exit
