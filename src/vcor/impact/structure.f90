@@ -90,6 +90,8 @@ module vcor_impact_structure
       real(wp) :: residual = 0.0_wp
       !> Modes for which the last two oscillators stand, if there are any
       type(rest_t) :: rest
+      !> Whether the material relaxes: the state of the modes does not have all energy then
+      logical :: relaxes = .false.
       !> Error of the sum [-]
       real(wp) :: error = 0.0_wp
    contains
@@ -283,6 +285,7 @@ contains
          call split_modes(terms, self%square, self%damping + self%square*terms%viscosity, &
             self%yield, vibration%damping(:n), vibration%square(:n), vibration%yield(:n), &
             vibration%kick(:n), vibration%rate, vibration%weight)
+         vibration%relaxes = size(vibration%rate) > 0
       end if
       if (all == n) return
       call split_rest(terms, self%rest%flexibility, self%rest%delay, [1.0_wp, &

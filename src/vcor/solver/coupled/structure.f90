@@ -77,7 +77,7 @@ contains
       call count_contacts(trajectory)
       trajectory%rigid_velocity = vibration%rigid_velocity(state)
       trajectory%structure_energy = unset
-      if (size(vibration%rate) == 0) trajectory%structure_energy = vibration%energy(state)
+      if (.not. vibration%relaxes) trajectory%structure_energy = vibration%energy(state)
       ! the spring touched first is free at the separation
       if (terms%equilibrium + sum(terms%moduli) > 0.0_wp) then
          before = (terms%equilibrium*w + sum(terms%moduli*lag)) &

@@ -616,7 +616,7 @@ contains
       modes = run%modes%state()
       trajectory%rigid_velocity = vibration%rigid_velocity(modes)
       trajectory%structure_energy = unset
-      if (size(vibration%rate) == 0) trajectory%structure_energy = vibration%energy(modes) &
+      if (.not. vibration%relaxes) trajectory%structure_energy = vibration%energy(modes) &
          + back*vibration%power_lost(modes)
       trajectory%work = run%work
       state = run%node(impact)

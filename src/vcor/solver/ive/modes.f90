@@ -129,7 +129,7 @@ contains
                + (vibration%yield(n) - square*kick*eigenvalue)*impulse) &
                /(1.0_wp + eigenvalue*(damping + square*eigenvalue))
             ! the last stage of a panel in which time stands still at the end has no weight
-            if (damping > 0.0_wp .and. size(vibration%rate) == 0 .and. n <= modes) lost = lost &
+            if (damping > 0.0_wp .and. .not. vibration%relaxes .and. n <= modes) lost = lost &
                + damping/vibration%yield(n)*sum(weight*map%compose(rate)**2)
             state%eta(n) = state%eta(n) + sum(real(map%last*(eigenvalue*rate + kick*impulse), wp))
             state%rate(n) = left*state%rate(n) + sum(real(map%last*rate, wp))
