@@ -96,6 +96,7 @@ def arguments(case):
             "text": byref(text),
         },
         "vcor_history": {"case": case, "rows": byref(count), "values": byref(text)},
+        "vcor_bounces": {"case": case, "rows": byref(count), "values": byref(text)},
         "vcor_relaxation": {
             "case": case, "material": b"rubber", "n?": 1, "times": doubles(1.0),
             "moduli": doubles(0.0),

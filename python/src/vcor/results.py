@@ -36,8 +36,9 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     path
         The HDF5 file of `vcor run` or `vcor material`.
     group
-        `summary` (a value per impact or material), `history` (over time, of a single impact), or
-        `relaxation` and `dynamic` (moduli, of `vcor material`).
+        `summary` (a value per impact or material), `history` (over time, of a single impact),
+        `bounces` (one after the other, with `impact.bounces`), or `relaxation` and `dynamic`
+        (moduli, of `vcor material`).
 
     Returns
     -------
