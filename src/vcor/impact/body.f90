@@ -1,12 +1,13 @@
 !> Bodies of simple shape that are struck: block, beam, rod and plate as structures
 !>
 !> The modes are those of Euler and Bernoulli's beam, of the thin rod in its length and of
-!> Kirchhoff's plate. Those with frequencies above a limit are kept as a flexibility, that under a
-!> static force less that of the modes kept: both are known in closed form. The frequencies are
-!> those with the storage modulus E_ref of the material at the limit.
+!> Kirchhoff's plate. Those with frequencies above a limit are kept together, with their
+!> flexibility: that under a static force less that of the modes kept, both of which are known in
+!> closed form. The frequencies are those with the storage modulus E_ref of the material at the
+!> limit.
 module vcor_impact_body
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_structure, only : new_structure, structure_t
+   use vcor_impact_structure, only : new_structure, rest_t, structure_t
    use vcor_kinds, only : pi, wp
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : gauss_nodes
@@ -28,8 +29,8 @@ module vcor_impact_body
    !> What is wrong with such a position
    character(len=*), parameter :: on_support = 'the impact is on a support, where the structure ' &
       //'does not move'
-   !> Modes that stand for all those beyond the limit
-   integer, parameter :: tail = 8
+   !> Loss of the modes beyond the limit, beyond which N/D would feed energy near u = 1
+   real(wp), parameter :: most_loss = 0.55_wp
    !> Most modes of a body: a collocation panel takes 50 ns for each
    integer, parameter :: most_modes = 200000
 
@@ -131,7 +132,7 @@ contains
          yield = [1.0_wp, 12.0_wp*(x - 0.5_wp)**2, yield*(line*length)]/(line*length)
       end if
       call assemble(self, w, yield, static_beam(support, x)*length**3/stiffness, damping_ratio, &
-         material, modulus, highest, 0.5_wp, error)
+         material, modulus, highest, 0.5_wp, .false., error)
    end subroutine new_beam
 
    !> A slender rod, struck at its end along its length
@@ -171,7 +172,7 @@ contains
          yield = [(2.0_wp, k=1, n)]/mass
       end if
       call assemble(self, w, yield, flexibility, damping_ratio, material, modulus, highest, &
-         0.0_wp, error)
+         0.0_wp, .true., error)
    end subroutine new_rod
 
    !> A thin rectangular plate, simply supported at all edges
@@ -227,7 +228,7 @@ contains
          return
       end if
       call assemble(self, w(:n), yield(:n), static_panel(length, width, position)/stiffness, &
-         damping_ratio, material, modulus, highest, 0.0_wp, error)
+         damping_ratio, material, modulus, highest, 0.0_wp, .false., error)
    end subroutine new_panel
 
    !> Modulus that the frequencies are for: the storage modulus at the highest one
@@ -260,13 +261,11 @@ contains
       end if
    end subroutine count_modes
 
-   !> Put the modes together, less those on whose node the impact is, and replace those beyond the
-   !> limit W by a few. Far from the first one the sum of 1/(m_n w_n^2) over the modes beyond a
-   !> frequency w is the integral of a density that falls as x^power dx with x = W/w: nodes and
-   !> weights of Gauss in 0 < x < 1, with the sum that the static flexibility leaves, stand for all
-   !> of them
+   !> Put the modes together, less those on whose node the impact is, and those beyond the limit.
+   !> Far from the first one the sum of 1/(m_n w_n^2) over the modes beyond a frequency w is the
+   !> integral of a density that falls as x^power dx with x = W/w
    pure subroutine assemble(self, w, yield, static, damping_ratio, material, modulus, highest, &
-                            power, error)
+                            power, in_phase, error)
       type(structure_t), intent(out) :: self
       !> Frequencies [rad/s] and yields [1/kg] of the modes, shape (n)
       real(wp), intent(in) :: w(:), yield(:)
@@ -281,25 +280,35 @@ contains
       real(wp), intent(in) :: highest
       !> Power of x
       real(wp), intent(in) :: power
+      !> Whether the modes come in phase again: their waves have one velocity
+      logical, intent(in) :: in_phase
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: residual, x(tail), share(tail), all_w(size(w) + tail), all_yield(size(w) + tail)
-      logical :: kept(size(w) + tail)
+      type(rest_t) :: rest
+      real(wp) :: moment(2)
+      logical :: kept(size(w))
 
-      kept(:size(w)) = yield > at_node*maxval(yield)
-      if (.not. (static > 0.0_wp .and. any(kept(:size(w))))) then
+      kept = yield > at_node*maxval(yield)
+      if (.not. (static > 0.0_wp .and. any(kept))) then
          call raise(error, error_input, on_support, about='position')
          return
       end if
-      residual = static - sum(yield/max(w, tiny(1.0_wp))**2, kept(:size(w)) .and. w > 0.0_wp)
-      call gauss_nodes(x, share)
-      share = share*x**power
-      all_w = [w, highest/x]
-      all_yield = [yield, residual*share/sum(share)*(highest/x)**2]
-      kept(size(w) + 1:) = residual > epsilon(1.0_wp)*static
-      call new_structure(self, pack(all_w**2, kept), 2.0_wp*damping_ratio*pack(all_w, kept), &
-         pack(all_yield, kept), error, 0.0_wp, material, modulus)
-      self%lumped = count(kept(size(w) + 1:))
+      rest%flexibility = static - sum(yield/max(w, tiny(1.0_wp))**2, kept .and. w > 0.0_wp)
+      if (rest%flexibility > epsilon(1.0_wp)*static) then
+         rest%frequency = max(highest, maxval(w))
+         moment = (power + 1.0_wp)/(power + [2.0_wp, 3.0_wp])
+         rest%delay = sqrt(moment(2))/rest%frequency
+         rest%loss = min(2.0_wp*damping_ratio*moment(1)/sqrt(moment(2)), most_loss)
+         ! what all yield, and how much of it one does, by those in the upper half of those kept
+         rest%yield = rest%flexibility*rest%frequency**2*(power + 1.0_wp)
+         if (.not. in_phase) rest%yield = sqrt(rest%yield &
+            *sum(yield**2, kept .and. w > 0.5_wp*maxval(w)) &
+            /sum(yield, kept .and. w > 0.5_wp*maxval(w)))
+      else
+         rest%flexibility = 0.0_wp
+      end if
+      call new_structure(self, pack(w**2, kept), 2.0_wp*damping_ratio*pack(w, kept), &
+         pack(yield, kept), error, 0.0_wp, material, modulus, rest)
    end subroutine assemble
 
    !> Mode of a beam of unit length, mass and stiffness

@@ -20,7 +20,12 @@ module vcor_impact_creep
    implicit none
    private
 
-   public :: split_modes, in_order, spectrum_t
+   public :: split_modes, split_rest, rest_damping, in_order, spectrum_t
+
+   !> Butterworth's D(u) = 1 + d_1 u + d_2 u^2 + d_1 u^3 + u^4: d_1 = 2 cos(pi/8) + 2 cos(3 pi/8)
+   !> and d_2 = 2 + sqrt(2)
+   real(wp), parameter :: rest_damping(2) = [2.0_wp*cos(0.125_wp*pi) + 2.0_wp*cos(0.375_wp*pi), &
+      2.0_wp + sqrt(2.0_wp)]
 
    !> Error of the interpolation
    real(wp), parameter :: of_interpolation = 1.0e-13_wp
@@ -70,6 +75,58 @@ contains
          weight = [weight, kept_r]
       end do
    end subroutine split_modes
+
+   !> Split the receptance C N(u)/(e D(u)), u = delay p, of many modes together: two oscillators are
+   !> the zeros of D, exponentials those of e, one in each gap
+   pure subroutine split_rest(terms, flexibility, delay, numerator, a, b, push, kick, rate, weight)
+      !> The material over its modulus that C is for, with its dashpot [-]
+      type(exponential_sum_t), intent(in) :: terms
+      !> C [m/N] and delay [s], > 0
+      real(wp), intent(in) :: flexibility, delay
+      !> Coefficients of N
+      real(wp), intent(in) :: numerator(0:2)
+      !> Dampings [1/s] and squares of the frequencies [1/s2] of the oscillators, q [1/kg] and kicks
+      !> [s/kg]
+      real(wp), intent(out) :: a(2), b(2), push(2), kick(2)
+      !> Rates x [1/s] and weights r [s/kg] of the exponentials
+      real(wp), allocatable, intent(out) :: rate(:), weight(:)
+
+      ! rate, over that of the oscillators, of a spring in the place of a dashpot; w^2 so large that
+      ! f has the zeros of e
+      real(wp), parameter :: fast = 1.0e8_wp, large = 1.0e150_wp
+      type(exponential_sum_t) :: own
+      type(spectrum_t) :: spectrum
+      complex(wp) :: pole, residue
+      real(wp) :: slope
+      integer :: gap, i
+
+      own = terms
+      if (terms%viscosity > 0.0_wp) then
+         own%rates = [terms%rates, fast/delay]
+         own%moduli = [terms%moduli, terms%viscosity*fast/delay]
+      end if
+      spectrum = in_order(own)
+      allocate (rate(ubound(spectrum%rate, 1)), weight(ubound(spectrum%rate, 1)))
+      do gap = 1, size(rate)
+         call find_zero(spectrum, large, 0.0_wp, gap, rate(gap), slope)
+         associate (u => -delay*rate(gap))
+            weight(gap) = -flexibility/slope*(numerator(0) + u*(numerator(1) + u*numerator(2))) &
+               /(1.0_wp + u*(rest_damping(1) + u*(rest_damping(2) + u*(rest_damping(1) + u))))
+         end associate
+      end do
+      do i = 1, 2
+         pole = exp(cmplx(0.0_wp, pi*(0.375_wp + 0.25_wp*real(i, wp)), wp))
+         residue = (numerator(0) + pole*(numerator(1) + pole*numerator(2)))/(rest_damping(1) &
+            + pole*(2.0_wp*rest_damping(2) + pole*(3.0_wp*rest_damping(1) + pole*4.0_wp)))
+         pole = pole/delay
+         residue = residue*flexibility/(delay*(spectrum%modulus(0) &
+            + sum(spectrum%modulus(1:)*pole/(pole + spectrum%rate(1:)))))
+         a(i) = -2.0_wp*real(pole, wp)
+         b(i) = 1.0_wp/delay**2
+         kick(i) = 2.0_wp*real(residue, wp)
+         push(i) = -2.0_wp*real(residue*conjg(pole), wp) - a(i)*kick(i)
+      end do
+   end subroutine split_rest
 
    !> The terms with their rates rising, those of one rate together
    pure function in_order(terms) result(spectrum)

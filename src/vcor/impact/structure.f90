@@ -2,11 +2,12 @@
 !>
 !> The struck point of a linear structure moves under the contact force F by
 !>
-!>     U = C_r F + sum_n eta_n,   eta_n'' + d_n eta_n' + w_n^2 e*eta_n = y_n F
+!>     U = C_r F + R + sum_n eta_n,   eta_n'' + d_n eta_n' + w_n^2 e*eta_n = y_n F
 !>
 !> with the modes' frequencies w_n, dampings d_n = 2 zeta_n w_n and yields y_n = 1/m_n, m_n the
-!> modal mass at that point, and the flexibility C_r of the modes left out. w = 0 is motion of a
-!> rigid body, with d > 0 against a dashpot. e* is 1 in an elastic structure. One of a viscoelastic
+!> modal mass at that point, the flexibility C_r of the modes left out, and the rest R: the modes
+!> beyond a limit, together (`rest_t`). w = 0 is motion of a rigid body, with d > 0 against a
+!> dashpot. e* is 1 in an elastic structure. One of a viscoelastic
 !> material, all of whose flexibility is that of modes, has e = E(t)/E_ref, by correspondence; with
 !> its material as a sum of exponentials each mode is an oscillator and exponentials
 !> (`vcor_impact_creep`):
@@ -24,14 +25,36 @@
 module vcor_impact_structure
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_numerical, error_t, raise
-   use vcor_impact_creep, only : split_modes
+   use vcor_impact_creep, only : rest_damping, split_modes, split_rest
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: structure_t, new_structure, vibration_t, state_of_modes_t
+   public :: structure_t, new_structure, rest_t, vibration_t, state_of_modes_t
+
+   !> The modes beyond a limit W together. Where the sum of 1/(m_n w_n^2) is the integral of a
+   !> density x^power dx in x = W/w they have, to second order in p/W, the receptance
+   !>
+   !>     C (1 - 2 zeta m_1 p/W - m_2 p^2/W^2),   m_i = (power + 1)/(power + 1 + i)
+   !>
+   !> and so have two damped oscillators: with u = delay p, delay = sqrt(m_2)/W, Butterworth's D of
+   !> fourth order and loss = 2 zeta m_1/sqrt(m_2)
+   !>
+   !>     C N(u)/D(u),   N = 1 + (d_1 - loss) u + (d_2 - 1 - d_1 loss) u^2
+   !>
+   !> They do not ring, as the sum of the modes does not, in which each has its own phase; without
+   !> damping they are off by u^4
+   type :: rest_t
+      !> C [m/N]; 0: there is no rest
+      real(wp) :: flexibility = 0.0_wp
+      !> delay [s] and loss [-]
+      real(wp) :: delay = 0.0_wp, loss = 0.0_wp
+      !> W [rad/s], and the yield, at W, of one mode which rings as they do: the root of the sum
+      !> of their squares, or the sum for those that come in phase again [1/kg]
+      real(wp) :: frequency = 0.0_wp, yield = 0.0_wp
+   end type rest_t
 
    !> A structure; immutable once built
    type :: structure_t
@@ -40,8 +63,8 @@ module vcor_impact_structure
       real(wp), allocatable :: square(:), damping(:), yield(:)
       !> Flexibility C_r of the modes left out [m/N], >= 0
       real(wp) :: residual = 0.0_wp
-      !> Number of modes, the last ones, each of which stands for many
-      integer :: lumped = 0
+      !> Modes beyond those
+      type(rest_t) :: rest
       !> Material of a viscoelastic structure, otherwise unallocated, and its modulus E_ref that w
       !> is for [Pa]
       class(material_t), allocatable, private :: material
@@ -65,13 +88,16 @@ module vcor_impact_structure
       real(wp), allocatable :: rate(:), weight(:)
       !> Flexibility of the modes left out [m/N]
       real(wp) :: residual = 0.0_wp
-      !> Number of oscillators, the last ones, each of which stands for many
-      integer :: lumped = 0
+      !> Modes for which the last two oscillators stand, if there are any
+      type(rest_t) :: rest
+      !> Whether the material relaxes: the state of the modes does not have all energy then
+      logical :: relaxes = .false.
       !> Error of the sum [-]
       real(wp) :: error = 0.0_wp
    contains
       procedure :: make_none
-      procedure :: rest
+      procedure :: at_rest
+      procedure :: modes
       procedure :: after
       procedure :: energy
       procedure :: power_lost
@@ -92,7 +118,8 @@ module vcor_impact_structure
 contains
 
    !> Build a structure
-   pure subroutine new_structure(self, square, damping, yield, error, residual, material, reference)
+   pure subroutine new_structure(self, square, damping, yield, error, residual, material, &
+                                 reference, rest)
       type(structure_t), intent(out) :: self
       !> Squares of the modes' frequencies [1/s2], >= 0, shape (modes)
       real(wp), intent(in) :: square(:)
@@ -108,6 +135,8 @@ contains
       class(material_t), intent(in), optional :: material
       !> Modulus that the frequencies are for [Pa], > 0; with `material`
       real(wp), intent(in), optional :: reference
+      !> Modes beyond those; absent: none
+      type(rest_t), intent(in), optional :: rest
 
       if (present(residual)) self%residual = residual
       if (.not. ieee_is_finite(self%residual)) self%residual = -1.0_wp
@@ -131,6 +160,7 @@ contains
       self%square = square
       self%damping = damping
       self%yield = yield
+      if (present(rest)) self%rest = rest
       if (.not. present(material)) return
       if (material%rigid .or. material%elastic()) return
       allocate (self%material, source=material)
@@ -179,8 +209,8 @@ contains
       if (allocated(self%material)) then
          if (self%material%rubbery() > 0.0_wp) softer = self%reference/self%material%rubbery()
       end if
-      time = sqrt(mass*(self%residual + softer*sum(self%yield/max(self%square, tiny(1.0_wp)), &
-         self%square > 0.0_wp)))
+      time = sqrt(mass*(self%residual + softer*(self%rest%flexibility &
+         + sum(self%yield/max(self%square, tiny(1.0_wp)), self%square > 0.0_wp))))
    end function slowness
 
    !> Displacement divided by force in the Laplace domain
@@ -191,13 +221,21 @@ contains
       !> Compliance [m/N]; 0 without a structure
       complex(wp) :: compliance
 
-      complex(wp) :: modulus
+      complex(wp) :: modulus, u
 
       compliance = 0.0_wp
       if (.not. allocated(self%square)) return
       modulus = 1.0_wp
       if (allocated(self%material)) modulus = self%material%complex_modulus(s)/self%reference
       compliance = self%residual + sum(self%yield/(s*(s + self%damping) + modulus*self%square))
+      associate (rest => self%rest)
+         if (.not. rest%flexibility > 0.0_wp) return
+         u = rest%delay*s
+         compliance = compliance + rest%flexibility/modulus &
+            *(1.0_wp + u*((rest_damping(1) - rest%loss) + u*(rest_damping(2) - 1.0_wp &
+            - rest_damping(1)*rest%loss)))/(1.0_wp + u*(rest_damping(1) &
+            + u*(rest_damping(2) + u*(rest_damping(1) + u))))
+      end associate
    end function receptance
 
    !> Expand the material in a sum of exponentials. A rule with the error e resolves rates up to
@@ -215,33 +253,47 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(exponential_sum_t) :: terms
+      real(wp), allocatable :: rate(:), weight(:)
+      integer :: n, all
 
       vibration%residual = self%residual
-      vibration%lumped = self%lumped
+      vibration%rest = self%rest
+      n = size(self%square)
+      all = n + merge(2, 0, self%rest%flexibility > 0.0_wp)
+      allocate (vibration%square(all), vibration%damping(all), vibration%yield(all), &
+         vibration%kick(all))
       if (.not. allocated(self%material)) then
-         vibration%square = self%square
-         vibration%damping = self%damping
-         vibration%yield = self%yield
-         allocate (vibration%kick(size(self%square)), source=0.0_wp)
+         vibration%square(:n) = self%square
+         vibration%damping(:n) = self%damping
+         vibration%yield(:n) = self%yield
+         vibration%kick(:n) = 0.0_wp
          allocate (vibration%rate(0), vibration%weight(0))
-         return
+         terms%equilibrium = 1.0_wp
+         allocate (terms%rates(0), terms%moduli(0))
+      else
+         call self%material%exponentials(window, max(accuracy*(brief/window)**3, &
+            epsilon(1.0_wp)), terms)
+         if (terms%error > 0.0_wp) terms%error = max(terms%error, abs(terms%integral(brief) &
+            /(self%material%integral(brief) + self%material%viscosity) - 1.0_wp))
+         if (.not. terms%error < 1.0_wp) then
+            call raise(error, error_numerical, 'no sum of exponentials represents the material ' &
+               //'of this structure')
+            return
+         end if
+         call terms%scale(1.0_wp/self%reference)
+         vibration%error = terms%error
+         call split_modes(terms, self%square, self%damping + self%square*terms%viscosity, &
+            self%yield, vibration%damping(:n), vibration%square(:n), vibration%yield(:n), &
+            vibration%kick(:n), vibration%rate, vibration%weight)
+         vibration%relaxes = size(vibration%rate) > 0
       end if
-      call self%material%exponentials(window, max(accuracy*(brief/window)**3, &
-         epsilon(1.0_wp)), terms)
-      if (terms%error > 0.0_wp) terms%error = max(terms%error, abs(terms%integral(brief) &
-         /(self%material%integral(brief) + self%material%viscosity) - 1.0_wp))
-      if (.not. terms%error < 1.0_wp) then
-         call raise(error, error_numerical, 'no sum of exponentials represents the material of ' &
-            //'this structure')
-         return
-      end if
-      call terms%scale(1.0_wp/self%reference)
-      vibration%error = terms%error
-      allocate (vibration%square, vibration%damping, vibration%yield, vibration%kick, &
-         mold=self%square)
-      call split_modes(terms, self%square, self%damping + self%square*terms%viscosity, &
-         self%yield, vibration%damping, vibration%square, vibration%yield, vibration%kick, &
-         vibration%rate, vibration%weight)
+      if (all == n) return
+      call split_rest(terms, self%rest%flexibility, self%rest%delay, [1.0_wp, &
+         rest_damping(1) - self%rest%loss, rest_damping(2) - 1.0_wp &
+         - rest_damping(1)*self%rest%loss], vibration%damping(n + 1:), vibration%square(n + 1:), &
+         vibration%yield(n + 1:), vibration%kick(n + 1:), rate, weight)
+      vibration%rate = [vibration%rate, rate]
+      vibration%weight = [vibration%weight, weight]
    end subroutine expand
 
    !> Make it no structure: nothing moves
@@ -252,15 +304,24 @@ contains
          self%weight(0))
    end subroutine make_none
 
+   !> Number of oscillators each of which is one mode
+   pure function modes(self)
+      class(vibration_t), intent(in) :: self
+      integer :: modes
+
+      modes = size(self%square)
+      if (self%rest%flexibility > 0.0_wp) modes = modes - 2
+   end function modes
+
    !> State of rest
-   pure function rest(self) result(state)
+   pure function at_rest(self) result(state)
       class(vibration_t), intent(in) :: self
       type(state_of_modes_t) :: state
 
       allocate (state%eta(size(self%square)), source=0.0_wp)
       allocate (state%rate(size(self%square)), source=0.0_wp)
       allocate (state%lag(size(self%rate)), source=0.0_wp)
-   end function rest
+   end function at_rest
 
    !> State after a time without force
    pure function after(self, state, time) result(later)
@@ -299,14 +360,17 @@ contains
       later%lag = exp(-self%rate*time)*state%lag
    end function after
 
-   !> Kinetic and elastic energy of a structure that does not relax
+   !> Kinetic and elastic energy of a structure that does not relax, in all modes but the rest
    pure function energy(self, state)
       class(vibration_t), intent(in) :: self
       type(state_of_modes_t), intent(in) :: state
       !> Energy [J]
       real(wp) :: energy
 
-      energy = sum(0.5_wp/self%yield*(state%rate**2 + self%square*state%eta**2))
+      associate (n => self%modes())
+         energy = sum(0.5_wp/self%yield(:n)*(state%rate(:n)**2 &
+            + self%square(:n)*state%eta(:n)**2))
+      end associate
    end function energy
 
    !> Power that the dampings of a structure take that does not relax
@@ -316,7 +380,9 @@ contains
       !> Power [W]
       real(wp) :: power
 
-      power = sum(self%damping/self%yield*state%rate**2)
+      associate (n => self%modes())
+         power = sum(self%damping(:n)/self%yield(:n)*state%rate(:n)**2)
+      end associate
    end function power_lost
 
    !> Where the struck point would be if the modes with stiffness were at rest, and those against a

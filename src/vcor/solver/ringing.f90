@@ -3,9 +3,11 @@
 !> From first touch on a mode rings beside the force that it follows, with an amplitude a that is
 !> known (`impact_t%ringing`). A collocation panel that does not resolve the mode lets it follow the
 !> force as a spring does, with any number of stages, so that the difference of two solutions does
-!> not show it. Modes that stand for many do not have their phases, and are not to ring at all. The
-!> force changes with the surface by its stiffness S = dF/ds, and the integral of a ringing force is
-!> what is left at first and last touch, the ends of S(t):
+!> not show it. Modes beyond a limit (`rest_t` of `vcor_impact_structure`) do not ring at all in the
+!> solution. Their phases differ, and what they do together is less than three times the root of the
+!> sum of the squares of what each does. The force changes with the surface by its stiffness
+!> S = dF/ds, and the integral of a ringing force is what is left at first and last touch, the ends
+!> of S(t):
 !>
 !>     impulse = a/w (Gamma(n) S(s = v/w) + S(s)),   v and s the velocity and the indentation there
 !>
@@ -34,7 +36,7 @@ module vcor_solver_ringing
       !> whether these are followed: the others count as missed, shape (modes resolved)
       real(wp), allocatable :: missed(:)
       logical, allocatable :: followed(:)
-      !> Number of modes that can be resolved: each of the others stands for many
+      !> Number of modes that can be resolved; one more stands for those beyond the limit
       integer :: modes = 0
       !> Time scale of the contact [s]
       real(wp) :: time_scale = 0.0_wp
@@ -62,18 +64,30 @@ contains
       !> Velocity below which the ringing need not be known [m/s]
       real(wp), intent(in) :: least
 
+      ! deviations that are next to impossible
+      real(wp), parameter :: deviations = 3.0_wp
+      real(wp) :: yield(vibration%modes() + 1)
       integer :: n, total
 
-      total = size(vibration%square)
-      self%modes = total - vibration%lumped
+      self%modes = vibration%modes()
+      total = self%modes
       self%time_scale = time_scale
-      self%frequency = sqrt(vibration%square)
-      self%decay = 0.5_wp*vibration%damping
+      self%frequency = sqrt(vibration%square(:total))
+      self%decay = 0.5_wp*vibration%damping(:total)
+      yield(:total) = vibration%yield(:total)
+      if (vibration%rest%flexibility > 0.0_wp) then
+         total = total + 1
+         self%frequency = [self%frequency, vibration%rest%frequency]
+         self%decay = [self%decay, 0.0_wp]
+         ! amplitudes fall as w^-(n + 2), which the integral of their squares divides by 2 n + 3
+         yield(total) = deviations*vibration%rest%yield &
+            /sqrt(2.0_wp*impact%law%start_exponent + 3.0_wp)
+      end if
       allocate (self%amplitude(total), self%velocity(total), self%missed(self%modes), &
          source=0.0_wp)
       do n = 1, total
          if (.not. self%frequency(n) > 0.0_wp) cycle
-         self%amplitude(n) = impact%ringing(self%frequency(n), vibration%yield(n), time_scale)
+         self%amplitude(n) = impact%ringing(self%frequency(n), yield(n), time_scale)
          self%velocity(n) = self%amplitude(n)*push(self, n, impact, impact%velocity, 0.0_wp)
       end do
       ! all that are not followed add a hundredth of the least velocity
@@ -201,8 +215,8 @@ contains
       end do
    end subroutine accept
 
-   !> Errors of the sphere's velocity at last touch: by what panels have missed, and by modes that
-   !> stand for many
+   !> Errors of the sphere's velocity at last touch: by what panels have missed, and by modes beyond
+   !> the limit
    pure function velocity_errors(self, impact, velocity, indentation) result(error)
       class(ringing_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -227,7 +241,7 @@ contains
       end do
    end function velocity_errors
 
-   !> Deflection with which the modes ring that panels have missed, and those that stand for many
+   !> Deflection with which the modes ring that panels have missed, and those beyond the limit
    pure function deflection(self)
       class(ringing_t), intent(in) :: self
       !> Deflection [m]

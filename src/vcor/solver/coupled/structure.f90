@@ -37,7 +37,7 @@ contains
       type(state_of_modes_t) :: state
       type(exponential_sum_t) :: terms
       type(modes_t) :: modes
-      real(wp) :: end(columns), time, brief, dt, w, before, force(2)
+      real(wp) :: end(columns), time, brief, dt, w, before
       real(wp), allocatable :: lag(:)
       integer :: i, n
       logical :: back
@@ -50,7 +50,7 @@ contains
       call impact%target%structure%expand(2.0_wp*time, brief, sum_share*accuracy, vibration, error)
       if (allocated(error)) return
       allocate (lag(size(terms%rates)), source=0.0_wp)
-      state = vibration%rest()
+      state = vibration%at_rest()
       before = 0.0_wp
       w = 0.0_wp
       dt = 0.0_wp
@@ -59,13 +59,14 @@ contains
          if (i == 1 .or. i == n) then
             dt = trajectory%state(col_time, i) - trajectory%state(col_time, i - 1)
             call modes%prepare(vibration, dt)
-            call modes%set(state)
+            call modes%set(state, trajectory%state(col_force, i - 1))
          end if
-         force = trajectory%state(col_force, i - 1)
-         if (i > 1 .and. i < n) force(2) = trajectory%state(col_force, i - 2)
-         ! the force falls as a straight line over the last step
-         if (i == n) force(2) = 2.0_wp*force(1)
-         call modes%advance(force)
+         if (i == n) then
+            ! the force falls as a straight line over the last step
+            call modes%advance(2.0_wp*trajectory%state(col_force, i - 1))
+         else
+            call modes%advance(trajectory%state(col_force, max(i - 2, 0)))
+         end if
          call modes%accept(trajectory%state(col_force, i))
          w = trajectory%state(col_sphere, i) - position_of(vibration, modes, &
             trajectory%state(col_force, i))
@@ -76,7 +77,7 @@ contains
       call count_contacts(trajectory)
       trajectory%rigid_velocity = vibration%rigid_velocity(state)
       trajectory%structure_energy = unset
-      if (size(vibration%rate) == 0) trajectory%structure_energy = vibration%energy(state)
+      if (.not. vibration%relaxes) trajectory%structure_energy = vibration%energy(state)
       ! the spring touched first is free at the separation
       if (terms%equilibrium + sum(terms%moduli) > 0.0_wp) then
          before = (terms%equilibrium*w + sum(terms%moduli*lag)) &

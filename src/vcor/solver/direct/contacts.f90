@@ -616,7 +616,7 @@ contains
       modes = run%modes%state()
       trajectory%rigid_velocity = vibration%rigid_velocity(modes)
       trajectory%structure_energy = unset
-      if (size(vibration%rate) == 0) trajectory%structure_energy = vibration%energy(modes) &
+      if (.not. vibration%relaxes) trajectory%structure_energy = vibration%energy(modes) &
          + back*vibration%power_lost(modes)
       trajectory%work = run%work
       state = run%node(impact)
@@ -777,7 +777,7 @@ contains
 
       dt = impact%law%contact_time/real(direct_first_steps, wp)*impact%time_scale()
       call run%begin(impact, terms, vibration, dt)
-      call run%modes%set(modes)
+      call run%modes%set(modes, 0.0_wp)
       call run%row%set(w, 0.0_wp, lag)
       run%force = 0.0_wp
       run%start = node(col_time)

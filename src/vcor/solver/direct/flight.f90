@@ -63,7 +63,7 @@ contains
          call meet(next)
       else
          modes = vibration%after(modes, time)
-         call next%modes%set(modes)
+         call next%modes%set(modes, 0.0_wp)
          call move_row(next)
          next%place = place
          next%s = place - sum(modes%eta) - sum(modes%lag)

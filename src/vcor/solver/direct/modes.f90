@@ -7,9 +7,10 @@
 !>
 !> with the exponential of the matrix of the differential equations of state and force. Its part
 !> A - 1 is computed and added: the rounding of A itself would be the same in every step, and add up
-!> to the number of steps. A mode that the steps do not resolve follows the force as a spring: left
-!> undamped, it would ring with the corners of the parabolas, and make a sphere hop from node to
-!> node.
+!> to the number of steps. What F_n adds at its own node is left out of the stored state, and added
+!> with the next step, so that a step passes through the modes once. A mode that the steps do not
+!> resolve follows the force as a spring: left undamped, it would ring with the corners of the
+!> parabolas, and make a sphere hop from node to node.
 module vcor_solver_direct_modes
    use vcor_impact_structure, only : state_of_modes_t, vibration_t
    use vcor_kinds, only : wp
@@ -20,17 +21,17 @@ module vcor_solver_direct_modes
 
    !> The parts of the structure of one kind at the newest node
    type :: parts_t
-      !> Their state, shape (number, components), and the same at the node being solved, without the
-      !> force there
-      real(wp), allocatable :: y(:, :), known(:, :)
+      !> Their state without what the force at that node adds, shape (number, components)
+      real(wp), allocatable :: y(:, :)
       !> Step from state to change of the state, A - 1, shape (number, components, components)
       real(wp), allocatable :: a(:, :, :)
-      !> Responses to the force at the start of the step and at the node before, shape
-      !> (number, components), and at its end
+      !> Responses to the force at the start of the step, what it adds there included, and at the
+      !> node before, shape (number, components), and at its end
       real(wp), allocatable :: start(:, :), before(:, :), end(:, :)
    contains
       procedure, private :: make_room
       procedure, private :: set_step
+      procedure, private :: join
       procedure, private :: step
    end type parts_t
 
@@ -40,8 +41,11 @@ module vcor_solver_direct_modes
       type(parts_t), private :: oscillators, exponentials
       !> Rates of the exponentials [1/s], shape (n)
       real(wp), allocatable, private :: rates(:)
-      !> Deflection by the force at the node being solved [m/N]
+      !> Deflection [m/N] and velocity [1/kg s] by the force at the node being solved
       real(wp) :: yield = 0.0_wp
+      real(wp), private :: speed = 0.0_wp
+      !> Force at the newest node [N]
+      real(wp), private :: force = 0.0_wp
       !> Number of multiplications of a step
       real(wp) :: work = 0.0_wp
    contains
@@ -66,15 +70,16 @@ contains
       ! largest frequency times step: a third of that of a force which alternates from node to node
       real(wp), parameter :: fastest = 1.0_wp
       real(wp) :: matrix(5, 5), unit
-      integer :: n
+      integer :: n, modes
 
+      modes = vibration%modes()
       call self%oscillators%make_room(size(vibration%square), 2)
       call self%exponentials%make_room(size(vibration%rate), 1)
       self%rates = vibration%rate
       do n = 1, size(vibration%square)
          associate (square => vibration%square(n), damping => vibration%damping(n), &
                     yield => vibration%yield(n), kick => vibration%kick(n))
-            if (sqrt(square)*dt > fastest .and. damping**2 < square) then
+            if (n <= modes .and. sqrt(square)*dt > fastest .and. damping**2 < square) then
                self%oscillators%a(n, 1, 1) = -1.0_wp
                self%oscillators%a(n, 2, 2) = -1.0_wp
                self%oscillators%end(n, :) = [(yield + damping*kick)/square, -kick]
@@ -98,7 +103,11 @@ contains
          matrix(1, :2) = [-vibration%rate(n), vibration%weight(n)]
          call self%exponentials%set_step(n, dt, matrix(:4, :4))
       end do
+      call self%oscillators%join()
+      call self%exponentials%join()
       self%yield = sum(self%oscillators%end(:, 1)) + sum(self%exponentials%end(:, 1))
+      self%speed = sum(self%oscillators%end(:, 2)) &
+         - sum(self%rates*self%exponentials%end(:, 1))
       self%work = real(10*size(vibration%square) + 4*size(vibration%rate), wp)
    end subroutine prepare
 
@@ -107,9 +116,8 @@ contains
       class(parts_t), intent(inout) :: self
       integer, intent(in) :: number, components
 
-      allocate (self%y(number, components), self%known(number, components), &
-         self%start(number, components), self%end(number, components), &
-         self%before(number, components), source=0.0_wp)
+      allocate (self%y(number, components), self%start(number, components), &
+         self%end(number, components), self%before(number, components), source=0.0_wp)
       allocate (self%a(number, components, components), source=0.0_wp)
    end subroutine make_room
 
@@ -167,78 +175,126 @@ contains
       matrix = total
    end subroutine exponentiate
 
+   !> Join what a force adds at its node to its response in the next step
+   pure subroutine join(self)
+      class(parts_t), intent(inout) :: self
+
+      integer :: i, j
+
+      do i = 1, size(self%end, 2)
+         self%start(:, i) = self%start(:, i) + self%end(:, i)
+         do j = 1, size(self%end, 2)
+            self%start(:, i) = self%start(:, i) + self%a(:, i, j)*self%end(:, j)
+         end do
+      end do
+   end subroutine join
+
    !> Set the state
-   subroutine set(self, state)
+   pure subroutine set(self, state, force)
       class(modes_t), intent(inout) :: self
       type(state_of_modes_t), intent(in) :: state
+      !> Force at that node [N]
+      real(wp), intent(in) :: force
 
       self%oscillators%y(:, 1) = state%eta
       self%oscillators%y(:, 2) = state%rate
       self%exponentials%y(:, 1) = state%lag
+      self%oscillators%y = self%oscillators%y - force*self%oscillators%end
+      self%exponentials%y = self%exponentials%y - force*self%exponentials%end
+      self%force = force
    end subroutine set
 
    !> Advance to the next node without the force there
-   subroutine advance(self, force)
+   pure subroutine advance(self, before)
       class(modes_t), intent(inout) :: self
-      !> Force at the last node and the node before [N]
-      real(wp), intent(in) :: force(2)
+      !> Force at the node before the newest [N]
+      real(wp), intent(in) :: before
 
-      call self%oscillators%step(force)
-      call self%exponentials%step(force)
+      call self%oscillators%step(self%force, before)
+      call self%exponentials%step(self%force, before)
+      self%force = 0.0_wp
    end subroutine advance
 
    !> Advance parts to the next node without the force there
-   subroutine step(self, force)
+   pure subroutine step(self, force, before)
       class(parts_t), intent(inout) :: self
       !> Force at the last node and the node before [N]
-      real(wp), intent(in) :: force(2)
+      real(wp), intent(in) :: force, before
 
-      integer :: i, j, n
-
-      do i = 1, size(self%y, 2)
-         do n = 1, size(self%y, 1)
-            self%known(n, i) = self%a(n, i, 1)*self%y(n, 1)
-         end do
-         do j = 2, size(self%y, 2)
-            do n = 1, size(self%y, 1)
-               self%known(n, i) = self%known(n, i) + self%a(n, i, j)*self%y(n, j)
-            end do
-         end do
-         if (maxval(force) > 0.0_wp) then
-            do n = 1, size(self%y, 1)
-               self%known(n, i) = self%known(n, i) + self%start(n, i)*force(1) &
-                  + self%before(n, i)*force(2)
-            end do
+      associate (y => self%y, a => self%a, start => self%start, more => self%before)
+         if (size(y, 2) == 1) then
+            y(:, 1) = y(:, 1) + (a(:, 1, 1)*y(:, 1) + start(:, 1)*force + more(:, 1)*before)
+         else if (max(force, before) > 0.0_wp) then
+            call push(size(y, 1), start(:, 1), start(:, 2), more(:, 1), more(:, 2), force, before, &
+               a(:, 1, 1), a(:, 1, 2), a(:, 2, 1), a(:, 2, 2), y(:, 1), y(:, 2))
+         else
+            call swing(size(y, 1), a(:, 1, 1), a(:, 1, 2), a(:, 2, 1), a(:, 2, 2), y(:, 1), y(:, 2))
          end if
-         do n = 1, size(self%y, 1)
-            self%known(n, i) = self%known(n, i) + self%y(n, i)
-         end do
-      end do
+      end associate
    end subroutine step
 
+   !> Advance oscillators under a force: arguments apart, for loops over several at once
+   pure subroutine push(n, start_1, start_2, more_1, more_2, force, before, &
+                        a_11, a_12, a_21, a_22, y_1, y_2)
+      !> Number
+      integer, intent(in) :: n
+      !> Responses of both components to the force at the start and at the node before
+      real(wp), intent(in) :: start_1(n), start_2(n), more_1(n), more_2(n)
+      !> Force at both [N]
+      real(wp), intent(in) :: force, before
+      !> Step from state to change of the state
+      real(wp), intent(in) :: a_11(n), a_12(n), a_21(n), a_22(n)
+      !> State
+      real(wp), intent(inout) :: y_1(n), y_2(n)
+
+      real(wp) :: one, other
+      integer :: i
+
+      do i = 1, n
+         one = a_11(i)*y_1(i) + a_12(i)*y_2(i) + start_1(i)*force + more_1(i)*before
+         other = a_21(i)*y_1(i) + a_22(i)*y_2(i) + start_2(i)*force + more_2(i)*before
+         y_1(i) = y_1(i) + one
+         y_2(i) = y_2(i) + other
+      end do
+   end subroutine push
+
+   !> Advance oscillators without a force
+   pure subroutine swing(n, a_11, a_12, a_21, a_22, y_1, y_2)
+      !> Number
+      integer, intent(in) :: n
+      !> Step from state to change of the state
+      real(wp), intent(in) :: a_11(n), a_12(n), a_21(n), a_22(n)
+      !> State
+      real(wp), intent(inout) :: y_1(n), y_2(n)
+
+      real(wp) :: one, other
+      integer :: i
+
+      do i = 1, n
+         one = a_11(i)*y_1(i) + a_12(i)*y_2(i)
+         other = a_21(i)*y_1(i) + a_22(i)*y_2(i)
+         y_1(i) = y_1(i) + one
+         y_2(i) = y_2(i) + other
+      end do
+   end subroutine swing
+
    !> Complete the state with the force at the new node
-   subroutine accept(self, force)
+   pure subroutine accept(self, force)
       class(modes_t), intent(inout) :: self
       !> Force there [N]
       real(wp), intent(in) :: force
 
-      associate (one => self%oscillators, other => self%exponentials)
-         one%y = one%known
-         other%y = other%known
-         if (force > 0.0_wp) then
-            one%y = one%y + one%end*force
-            other%y = other%y + other%end*force
-         end if
-      end associate
+      self%force = force
    end subroutine accept
 
-   !> Deflection at the node being solved without the force there
+   !> Deflection at the newest node, at the one being solved without the force there
    pure function deflection(self)
       class(modes_t), intent(in) :: self
       !> Deflection [m]
       real(wp) :: deflection
 
-      deflection = total(self%oscillators%known(:, 1)) + total(self%exponentials%known(:, 1))
+      deflection = total(self%oscillators%y(:, 1)) + total(self%exponentials%y(:, 1)) &
+         + self%yield*self%force
    end function deflection
 
    !> Velocity of the struck point in the modes at the newest node
@@ -247,7 +303,8 @@ contains
       !> Velocity [m/s]
       real(wp) :: rate
 
-      rate = total(self%oscillators%y(:, 2)) - sum(self%rates*self%exponentials%y(:, 1))
+      rate = total(self%oscillators%y(:, 2)) - sum(self%rates*self%exponentials%y(:, 1)) &
+         + self%speed*self%force
    end function rate
 
    !> Sum of many numbers, in parts that do not wait for each other
@@ -272,9 +329,11 @@ contains
       class(modes_t), intent(in) :: self
       type(state_of_modes_t) :: state
 
-      allocate (state%eta, source=self%oscillators%y(:, 1))
-      allocate (state%rate, source=self%oscillators%y(:, 2))
-      allocate (state%lag, source=self%exponentials%y(:, 1))
+      associate (one => self%oscillators, other => self%exponentials)
+         allocate (state%eta, source=one%y(:, 1) + self%force*one%end(:, 1))
+         allocate (state%rate, source=one%y(:, 2) + self%force*one%end(:, 2))
+         allocate (state%lag, source=other%y(:, 1) + self%force*other%end(:, 1))
+      end associate
    end function state
 
 end module vcor_solver_direct_modes

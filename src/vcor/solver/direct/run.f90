@@ -126,7 +126,7 @@ contains
          return
       end if
       self%steps = self%steps + 1
-      call self%modes%advance([self%force(1), self%force(2)])
+      call self%modes%advance(self%force(2))
       call self%row%find_levels()
       associate (dt => self%dt, f => self%force)
          ! a sum of equal steps would be off by the same rounding in each of them
@@ -157,7 +157,8 @@ contains
          self%s = s
          f = [force, f(1), f(2)]
          if (.not. force > 0.0_wp) f(2:) = 0.0_wp
-         velocity = self%modes%rate()
+         velocity = 0.0_wp
+         if (force > 0.0_wp) velocity = self%modes%rate()
          self%power(:, 2:3) = self%power(:, 1:2)
          self%power(:, 1) = force*[self%sphere_velocity(impact) - velocity, velocity]
          if (any(abs(self%power(2, :)) > 0.0_wp)) self%work = self%work &

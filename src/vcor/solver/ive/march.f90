@@ -175,7 +175,7 @@ contains
          trajectory%rigid_velocity = vibration%rigid_velocity(modes)
          trajectory%structure_energy = unset
          ! collocation damps modes that are fast compared with a panel
-         if (size(vibration%rate) == 0) trajectory%structure_energy = &
+         if (.not. vibration%relaxes) trajectory%structure_energy = &
             sum(trajectory%share(0:trajectory%last) &
             *trajectory%state(col_plate_velocity, 0:trajectory%last)) - motion%start%lost
       end associate
@@ -245,7 +245,7 @@ contains
             now%alpha = impact%target%alpha(0.0_wp)
             now%force = impact%first_force()
             if (allocated(sums%vibration)) then
-               now%modes = sums%vibration%rest()
+               now%modes = sums%vibration%at_rest()
                ! a flexibility takes up the velocity at first
                if (sums%vibration%residual > 0.0_wp) now%force = 0.0_wp
             end if

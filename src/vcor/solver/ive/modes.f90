@@ -114,12 +114,14 @@ contains
 
       complex(wp), dimension(slots) :: eigenvalue, impulse, rate
       real(wp) :: left
-      integer :: n
+      integer :: n, modes
 
       eigenvalue = duration*map%eigenvalue
       impulse = map%decompose(gained)
       ! share of the eigenvalue 0 of a map that is stationary at the end
       left = 1.0_wp - sum(real(map%last*map%left_one, wp))
+      ! what the others take has gone into modes
+      modes = vibration%modes()
       do n = 1, size(vibration%square)
          associate (square => vibration%square(n), damping => vibration%damping(n), &
                     kick => vibration%kick(n))
@@ -127,7 +129,7 @@ contains
                + (vibration%yield(n) - square*kick*eigenvalue)*impulse) &
                /(1.0_wp + eigenvalue*(damping + square*eigenvalue))
             ! the last stage of a panel in which time stands still at the end has no weight
-            if (damping > 0.0_wp .and. size(vibration%rate) == 0) lost = lost &
+            if (damping > 0.0_wp .and. .not. vibration%relaxes .and. n <= modes) lost = lost &
                + damping/vibration%yield(n)*sum(weight*map%compose(rate)**2)
             state%eta(n) = state%eta(n) + sum(real(map%last*(eigenvalue*rate + kick*impulse), wp))
             state%rate(n) = left*state%rate(n) + sum(real(map%last*rate, wp))
