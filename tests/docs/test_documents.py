@@ -119,6 +119,8 @@ def folder(vcor, package, tmp_path):
 VALIDITY = re.compile(r"vcor: note: \S+: validity")
 #: The same in Python, with the line of the script
 VALIDITY_WARNING = re.compile(r"^\S+: ValidityWarning: .*\n  .*\n", re.MULTILINE)
+# how long a command takes is said where it is minutes, which depends on what else the machine does
+LONG = re.compile(r"vcor: note: \S+: the fit takes some \d+ min")
 
 
 # A level below good: on a screen, as a value of --print or in a column of a table
@@ -156,8 +158,9 @@ def test_levels_are_seen(tmp_path):
 
 
 def shell(folder, text, page=""):
-    """Run a block as it stands; what it prints. On stderr is nothing but what the page shows, and
-    how valid bare numbers are; the page has a word on results that are not good."""
+    """Run a block as it stands; what it prints. On stderr is nothing but what the page shows, how
+    valid bare numbers are, and on a busy machine how long it takes; the page has a word on results that
+    are not good."""
     before = time.time_ns()
     env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
     done = subprocess.run(
@@ -170,7 +173,11 @@ def shell(folder, text, page=""):
         env=env,
     )
     stderr = VALIDITY_WARNING.sub("", done.stderr)
-    errors = [line for line in stderr.splitlines() if line not in page and not VALIDITY.match(line)]
+    errors = [
+        line
+        for line in stderr.splitlines()
+        if line not in page and not VALIDITY.match(line) and not LONG.match(line)
+    ]
     assert (done.returncode, errors) == (0, []), text
     # a page that is made from the help has the help's examples as they are
     if text in page and not page.startswith("<!-- Made by"):
@@ -340,7 +347,7 @@ def test_the_sweep_of_the_page(folder):
     (groups,) = blocks("docs/sweeps.md", "fortran")
     case = (folder / "mine.nml").read_text()
     (folder / "case.nml").write_text(f"{case}\n{groups}")
-    shell(folder, "vcor run case.nml --quiet; vcor run examples/paper/sls.nml --quiet")
+    shell(folder, "vcor run case.nml --quiet; vcor run examples/paper/sls.nml examples/superball.nml --quiet")
     scripts = blocks("docs/sweeps.md", "python") + blocks("docs/output.md", "python")
     assert len(scripts) >= 5
     env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
