@@ -692,7 +692,7 @@ contains
    !>     2 V = m v^2 + C_r (F - W)^2 + sum (eta'^2 + w^2 (eta - y W/w^2)^2)/y + (F - W)^2/(k u'),
    !>
    !> only falls, and lifts off a sphere if it is W^2/(k u') with the glassy k, or more
-   function is_held_down(run, impact, vibration) result(held)
+   pure function is_held_down(run, impact, vibration) result(held)
       type(run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
       type(vibration_t), intent(in) :: vibration
@@ -713,13 +713,16 @@ contains
          return
       end if
       firmness = impact%factor*impact%modulus%glassy()
-      if (size(vibration%rate) > 0 .or. impact%kernel_viscosity() > 0.0_wp &
+      if (vibration%relaxes .or. impact%kernel_viscosity() > 0.0_wp &
           .or. .not. firmness <= huge(1.0_wp)) return
       modes = run%modes%state()
-      energy = impact%mass*run%sphere_velocity(impact)**2 &
-         + vibration%residual*(run%force(1) - weight)**2 + sum((modes%rate**2 &
-         + vibration%square*(modes%eta - vibration%yield*weight/vibration%square)**2) &
-         /vibration%yield)
+      ! modes beyond the limit follow the force as the flexibility C_r does
+      associate (n => vibration%modes())
+         energy = impact%mass*run%sphere_velocity(impact)**2 + (vibration%residual &
+            + vibration%rest%flexibility)*(run%force(1) - weight)**2 + sum((modes%rate(:n)**2 &
+            + vibration%square(:n)*(modes%eta(:n) - vibration%yield(:n)*weight &
+            /vibration%square(:n))**2)/vibration%yield(:n))
+      end associate
       held = firmness*impact%law%slope(run%s)*energy + (run%force(1) - weight)**2 < weight**2
    end function is_held_down
 
