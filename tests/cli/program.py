@@ -73,8 +73,8 @@ NAMES = [
 ]
 ALL = ",".join(NAMES)
 # Those that are whole numbers in the file of a part, and those of them that are texts elsewhere
-WHOLE = {"contacts", "steps", "status", "validity", "validity_cause"}
-TEXTS = WHOLE - {"contacts", "steps"}
+WHOLE = {"contacts", "bounces", "bounces_end", "steps", "status", "validity", "validity_cause"}
+TEXTS = WHOLE - {"contacts", "bounces", "steps"}
 
 # What is said on stderr of the validity of bare numbers
 VALIDITY = re.compile(r"^vcor: note: .*: validity.*\n", re.MULTILINE)
