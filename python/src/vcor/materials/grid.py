@@ -26,7 +26,7 @@ _MOST_CELLS, MOST_COLUMNS = 10_000_000, 2000
 _ERRORS = ("#NULL!", "#DIV/0!", "#VALUE!", "#REF!", "#NAME?", "#NUM!", "#N/A")
 #: Encodings of instruments that do not write Unicode; the one whose names are known is taken
 _ENCODINGS = ("cp1252", "shift_jis", "gb18030", "iso8859_7", "latin-1")
-_NUMBER = re.compile(r"[-+−]?(\d+[.,]?\d*|[.,]\d+)([eEdD][-+−]?\d+)?")
+_NUMBER = re.compile(r"[-+−]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+−]?\d+)?")
 #: Numbers whose thousands are apart, which no other reading allows: 1,234.5 and 1.234,5, 1,234,567
 #: and 1.234.567, or 1'234 and with a blank that is no separator
 _THOUSANDS = re.compile(

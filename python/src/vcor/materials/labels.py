@@ -51,8 +51,8 @@ _STEP = re.compile(
     r"|relaxation|étape|paso|block|isotherm)",
     re.IGNORECASE,
 )
-#: Longest line that is looked at
-_LONGEST = 300
+#: Longest line or head that is taken apart: some expressions take the square of the length
+LONGEST = 300
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def read_label(text: str, *, among_others: bool = False) -> Label:
         Whether a line that begins as the title of a step may say more than the temperature; of
         other lines the flaw says so.
     """
-    if len(text) > _LONGEST or not any(map(str.isdigit, text)):
+    if len(text) > LONGEST or not any(map(str.isdigit, text)):
         return UNLABELLED
     # lines across the page are no signs
     text = re.sub(r"-{3,}|={2,}|_{3,}", " ", unified(text))

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .. import _library
 from ..units import plain_unit, quantities_of, size, suffix_unit
-from .labels import TEMPERATURE, read_label, unified
+from .labels import LONGEST, TEMPERATURE, read_label, unified
 
 
 @dataclass(frozen=True)
@@ -192,6 +192,8 @@ def is_address(text: str) -> bool:
 def _parts(text: str) -> list[tuple[str, str]]:
     """Ways to take a head apart into a name and a unit, the most likely one first."""
     ways = [(text, "")]
+    if len(text) > LONGEST:
+        return ways
     if found := re.fullmatch(r"(.+?)\s*\[([^\[\]]*)\]", text):
         ways.append((found[1], found[2]))
     if found := re.fullmatch(r"(.+?)\s*\(([^()]*|[^()]*\([^()]*\)[^()]*)\)", text):
@@ -275,6 +277,8 @@ def _of_run(text: str, *, by_word: bool = False) -> Head | None:
 
     With `by_word` a word such as run has to stand before the number.
     """
+    if len(text) > LONGEST:
+        return None
     found = _RUN_BEHIND.fullmatch(text) or _RUN_BEFORE.fullmatch(text)
     if not found or (by_word and not found["word"]):
         return None
