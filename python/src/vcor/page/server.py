@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import logging
 import os
+import shutil
 import signal
 import socket
 import tempfile
@@ -173,19 +173,28 @@ def serve(
         span = Span(axis.address, first, last, axis.is_log)
     # a browser that goes away ends its own connection, not the program
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
-    for one in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(one, signal.default_int_handler)
     own = [] if values else list(files)
     with tempfile.TemporaryDirectory(prefix="vcor-page-") as folder:
+
+        def end(*_: object) -> None:
+            """End at once.
+
+            An exception might be lost in the midst of a callback, and threads that still solve for
+            pages are of no use to anybody.
+            """
+            shutil.rmtree(folder, ignore_errors=True)
+            os._exit(0)
+
+        for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            # one that is ignored, as under nohup, stays so
+            if signal.getsignal(one) is not signal.SIG_IGN:
+                signal.signal(one, end)
         server = _server(case, own, span, port, IOLoop.current(), Path(folder))
         if not quiet:
             _print(f"vcor page: {_url(server)} (Ctrl-C ends it)")
         if browser and not _open(_url(server)):
             _print(f"vcor: note: found no browser; open {_url(server)} in one")
-        with contextlib.suppress(KeyboardInterrupt):
-            server.io_loop.start()
-    # at once: threads that still solve for pages are of no use to anybody
-    os._exit(0)
+        server.io_loop.start()
 
 
 def _print(line: str) -> None:
