@@ -13,7 +13,10 @@ module vcor_impact_trajectory
    public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
    public :: contact_unknown, contact_separated, contact_lasting, contact_sticking, &
       contact_resting, history_steps
-   public :: refuse_growth, unrest
+   public :: refuse_growth, unrest, far_off
+
+   !> Stated error over the accuracy asked for, beyond which a result is not given
+   real(wp), parameter :: far_off = 100.0_wp
 
    !> Rows of `state`: time [s]
    integer, parameter :: col_time = 1
@@ -343,14 +346,12 @@ contains
       class(trajectory_t), intent(in) :: self
       logical :: misses_by_far
 
-      real(wp), parameter :: far = 100.0_wp
-
       misses_by_far = self%accuracy > 0.0_wp
       if (.not. misses_by_far) return
       misses_by_far = .not. (ieee_is_finite(self%cor_error) &
          .and. ieee_is_finite(self%cor_sphere_error))
       if (.not. misses_by_far) misses_by_far = &
-         max(self%cor_error, self%cor_sphere_error) - self%change_beside > far*self%accuracy
+         max(self%cor_error, self%cor_sphere_error) - self%change_beside > far_off*self%accuracy
    end function misses_by_far
 
    !> State at equal steps of time from first contact to the final node: interpolated by the

@@ -5,7 +5,7 @@
 !> `vcor_impact_face`). The march goes on while the sphere still moves towards it, through further
 !> contacts. Its state where the sphere leaves follows from the course of the force. From then on
 !> it is followed without the waves in the face, which have left the place, with the dent as the
-!> springs of a contact without waves keep it (`vcor_solver_direct_contacts`).
+!> springs of a contact without waves keep it (`vcor_solver_direct_march`).
 module vcor_solver_coupled_structure
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -14,7 +14,7 @@ module vcor_solver_coupled_structure
       col_sphere_velocity, col_time, columns, trajectory_t
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_direct_contacts, only : comes_back
+   use vcor_solver_direct_march, only : comes_back
    use vcor_solver_direct_modes, only : modes_t
    use vcor_tuning, only : sum_share
    implicit none

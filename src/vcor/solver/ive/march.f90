@@ -18,7 +18,7 @@ module vcor_solver_ive_march
    use vcor_kinds, only : finest_accuracy, unset, wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t, closing, doubling, linear, opening, rule_t
-   use vcor_solver_direct_contacts, only : comes_back
+   use vcor_solver_direct_march, only : comes_back
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_control, only : length_factor
    use vcor_solver_ive_course, only : at_branch, course_t, of_cor, of_cor_sphere, of_time
