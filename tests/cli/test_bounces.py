@@ -118,6 +118,23 @@ def test_how_they_end(vcor):
     assert "none; then the weight keeps the sphere in contact" in vcor.succeeds("run", "case.nml")
 
 
+def test_a_dent_that_rises_meets_the_sphere(vcor):
+    """In the last hop the sphere is still on its way up: no time scale has its velocity, and no end is given."""
+    vcor.write(
+        "&impact drop_height = 0.25, gravity = 9.81, bounces = 20 /\n"
+        "&sphere diameter = 0.012, material = 'steel' /\n"
+        "&plate material = 'pad', waves = 'none' /\n"
+        "&material name = 'steel', model = 'rigid', density = 7850 /\n"
+        "&material name = 'pad', model = 'sls', glassy_modulus = 2e7, alpha = 500, beta = 1500,\n"
+        "   poisson_ratio = 0.48, density = 1100 /\n"
+    )
+    vcor.succeeds("run", "case.nml", "--quiet")
+    table = pd.read_csv(vcor.folder / "case_bounces.csv", comment="#")
+    summary = pd.read_csv(vcor.folder / "case_summary.csv", comment="#").iloc[0]
+    assert (summary.bounces, summary.bounces_end) == (9, "rest")
+    assert summary.bouncing_time > table.last_separation.iloc[-1]
+
+
 def test_sweep(vcor):
     """A sweep has how many bounces there were, and how long they took, at each point, and no table."""
     more = "&sweep parameter = 'impact.velocity', values = 0.1, 0.5 /"

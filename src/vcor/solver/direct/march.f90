@@ -191,9 +191,8 @@ contains
             exit
          end if
          origin = origin + run%t
-         call fly(run, here, terms, vibration, recovery, share, flown)
+         call fly(run, here, terms, vibration, recovery, share, flown, end_time)
          origin = origin + flown
-         end_time = here%patience(here%time_scale())
          if (settings%end_time > 0.0_wp) end_time = settings%end_time - origin
          if (.not. end_time > 0.0_wp) then
             bounces%ending = ends_time
@@ -363,8 +362,8 @@ contains
 
       weight = impact%mass*impact%gravity
       rests = abs(run%force(1) - weight) <= negligible*weight .and. &
-         abs(run%sphere_velocity(impact)) <= negligible*impact%velocity .and. &
-         abs(run%modes%rate()) <= negligible*impact%velocity
+         abs(run%sphere_velocity(impact)) <= negligible*abs(impact%velocity) .and. &
+         abs(run%modes%rate()) <= negligible*abs(impact%velocity)
    end function is_at_rest
 
    !> Whether the energy that is left cannot lift the sphere off again, where the indentation is
