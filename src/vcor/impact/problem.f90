@@ -177,7 +177,7 @@ contains
       !> Velocity [m/s]
       real(wp) :: speed
 
-      speed = self%velocity + self%gravity*time_scale
+      speed = abs(self%velocity) + self%gravity*time_scale
    end function speed_scale
 
    !> Force at first contact, nonzero only for a dashpot under a flat punch (n = 1), and reduced by
@@ -332,7 +332,7 @@ contains
    end function time_scale
 
    !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz, with v0 + g T instead
-   !> of v0 under gravity
+   !> of v0 under gravity. Of v0 its size counts: a dent that recovers meets a sphere on its way up
    pure function elastic_time(self, firmness) result(time)
       class(impact_t), intent(in) :: self
       !> Firmness k of the contact [N/m^1.5], > 0
@@ -343,7 +343,7 @@ contains
       real(wp) :: guess
       integer :: iteration
 
-      time = self%law%time_scale(self%mass, firmness, self%velocity)
+      time = self%law%time_scale(self%mass, firmness, abs(self%velocity))
       if (.not. self%gravity > 0.0_wp) return
       ! the map contracts by (n - 1)/(n + 1)
       do iteration = 1, 60

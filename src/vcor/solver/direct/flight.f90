@@ -20,7 +20,7 @@ module vcor_solver_direct_flight
 contains
 
    !> Fly to the next bounce
-   subroutine fly(run, impact, terms, vibration, recovery, share, time, patience)
+   subroutine fly(run, impact, terms, vibration, recovery, share, time)
       !> The run, free at its newest node; on return at the first node of the next bounce
       type(run_t), intent(inout) :: run
       !> The impact, with the velocity at the first node of this bounce; on return of the next one
@@ -32,12 +32,9 @@ contains
       type(recovery_t), intent(in) :: recovery
       !> Time step over the contact time of an elastic impact
       real(wp), intent(in) :: share
-      !> Duration of the flight from the newest node, and time after which the next contact counts
-      !> as lasting [s]
-      real(wp), intent(out) :: time, patience
+      !> Duration of the flight from the newest node [s]
+      real(wp), intent(out) :: time
 
-      ! of the velocity of which the time scale is taken: a sphere may be met by a face that rises
-      real(wp), parameter :: slowest = 1.0e-6_wp
       type(run_t) :: next
       type(state_of_modes_t) :: modes
       real(wp) :: velocity, place, dt
@@ -50,10 +47,8 @@ contains
       else
          time = time_to_reach(impact, vibration, modes, place, velocity, run%dt)
       end if
-      impact%velocity = max(velocity + impact%gravity*time, slowest*abs(velocity))
-      dt = share*impact%law%contact_time*impact%time_scale()
-      patience = impact%patience(impact%time_scale())
       impact%velocity = velocity + impact%gravity*time
+      dt = share*impact%law%contact_time*impact%time_scale()
       place = place + time*(velocity + 0.5_wp*impact%gravity*time)
       call next%begin(impact, terms, vibration, dt)
       next%force = 0.0_wp

@@ -191,8 +191,9 @@ contains
             exit
          end if
          origin = origin + run%t
-         call fly(run, here, terms, vibration, recovery, share, flown, end_time)
+         call fly(run, here, terms, vibration, recovery, share, flown)
          origin = origin + flown
+         end_time = here%patience(here%time_scale())
          if (settings%end_time > 0.0_wp) end_time = settings%end_time - origin
          if (.not. end_time > 0.0_wp) then
             bounces%ending = ends_time
