@@ -5,7 +5,7 @@ module vcor_app_cli
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : time_range_t
-   use vcor_io_restart, only : crc32
+   use vcor_io_crc, only : crc32
    use vcor_sweep_points, only : most_threads
    use vcor_text, only : control_in, integer_text, name_flaw, printable
    use vcor_words, only : contains_word, join_words, suggestion

@@ -14,9 +14,10 @@ module vcor_app_sweep
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_validity, only : level_none
+   use vcor_io_crc, only : crc32
    use vcor_io_file, only : stderr_is_terminal, write_stdout, write_terminal
    use vcor_rounded, only : plain_number, significant
-   use vcor_io_restart, only : crc32, create_restart, hash_of, open_restart, restart_t
+   use vcor_io_restart, only : create_restart, hash_of, open_restart, restart_t
    use vcor_text, only : integer_text
    use vcor_words, only : joined
    use vcor_io_results, only : summary_table

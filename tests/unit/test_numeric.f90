@@ -3,7 +3,7 @@ program test_numeric
    use, intrinsic :: iso_fortran_env, only : int32
    use vcor_error, only : error_t
    use vcor_kinds, only : pi, wp
-   use vcor_io_restart, only : crc32
+   use vcor_io_crc, only : crc32
    use vcor_solver_convolution, only : dot
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, &
       & legendre, radau_nodes

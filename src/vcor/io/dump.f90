@@ -14,10 +14,10 @@ module vcor_io_dump
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_case_reader, only : read_case_text
+   use vcor_io_crc, only : crc32
    use vcor_io_data_file, only : data_file, file_keys, modes_file
    use vcor_io_file, only : read_text_file
    use vcor_io_path, only : folder_of, join_path
-   use vcor_io_restart, only : crc32
    use vcor_text, only : buffer_t, integer_text, printable, shortened
    use vcor_version, only : version
    implicit none

@@ -8,7 +8,7 @@
 !>     INDEX BITS BITS ... CHECK
 !>
 !> with the number of the point, the bits of each number of its outcome (`row_of`) as 16 hexadecimal
-!> digits, and the CRC-32 of the line up to there in as many, which every single wrong bit changes.
+!> digits, and their check sum in as many, which every single wrong bit changes.
 !> The file is created exclusively, and only ever appended to. If the process is killed, or the disk
 !> is full, the last line may be incomplete; it is dropped. A line that is wrong in any other way is
 !> refused with the whole file.
@@ -20,6 +20,7 @@ module vcor_io_restart
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_file, error_t, raise
    use vcor_impact_trajectory, only : contact_separated
+   use vcor_io_crc, only : crc32
    use vcor_io_file, only : remove_file, write_all
    use vcor_io_path, only : check_plain, check_readable, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_text, c_truncate, errno_exists, &
@@ -31,7 +32,7 @@ module vcor_io_restart
    implicit none
    private
 
-   public :: restart_t, create_restart, open_restart, raise_unfinished, hash_of, crc32
+   public :: restart_t, create_restart, open_restart, raise_unfinished, hash_of
 
    !> File of an unfinished sweep
    type :: restart_t
@@ -333,28 +334,33 @@ contains
       !> What is wrong with the line; empty if nothing is
       character(len=:), allocatable, intent(out) :: flaw
 
-      integer(int64) :: bits
+      integer(int64) :: words(size(row) + 1)
+      character(len=index_width) :: index_text
       integer :: digit, i, j, k, number, status
 
       place = 0
-      flaw = 'it has the wrong check sum'
-      k = len(line) - 1
-      if (line(k + 1:) /= new_line('a')) return
-      if (line(k - number_width:k) /= check_of(line(:k - number_width - 1))) return
       flaw = 'expected the bits of a point'
       read (line(:index_width), '(i10)', iostat=status) number
       if (status /= 0) return
+      write (index_text, '(i10)') number
+      if (line(:index_width) /= index_text) return
       k = index_width
-      do i = 1, size(row)
+      do i = 1, size(words)
          if (line(k + 1:k + 1) /= ' ') return
-         bits = 0
+         words(i) = 0
          do j = k + 2, k + 1 + number_width
             digit = index(digits, line(j:j)) - 1
             if (digit < 0) return
-            bits = ior(shiftl(bits, 4), int(digit, int64))
+            words(i) = ior(shiftl(words(i), 4), int(digit, int64))
          end do
-         row(i) = transfer(bits, 1.0_wp)
          k = k + 1 + number_width
+      end do
+      if (line(k + 1:) /= new_line('a')) return
+      flaw = 'it has the wrong check sum'
+      if (words(size(words)) /= check_of(number, words(:size(row)))) return
+      flaw = 'expected the bits of a point'
+      do i = 1, size(row)
+         row(i) = transfer(words(i), 1.0_wp)
          if (bounds(2, i) >= huge(1.0_wp)) cycle
          ! a NaN fails the first comparison, before it is rounded
          if (.not. abs(row(i)) <= huge(1)) return
@@ -401,23 +407,23 @@ contains
       real(wp), intent(in) :: row(:)
       character(len=*), intent(out) :: line
 
-      integer(int64) :: bits
+      integer(int64) :: words(size(row) + 1)
       integer :: digit, i, j, k
 
+      words(:size(row)) = transfer(row, words)
+      words(size(words)) = check_of(place, words(:size(row)))
       write (line(:index_width), '(i10)') place
       k = index_width
-      do i = 1, size(row)
+      do i = 1, size(words)
          line(k + 1:k + 1) = ' '
-         bits = transfer(row(i), bits)
          do j = k + 1 + number_width, k + 2, -1
-            digit = int(iand(bits, 15_int64)) + 1
+            digit = int(iand(words(i), 15_int64)) + 1
             line(j:j) = digits(digit:digit)
-            bits = shiftr(bits, 4)
+            words(i) = shiftr(words(i), 4)
          end do
          k = k + 1 + number_width
       end do
-      line(k + 1:k + 1 + number_width) = check_of(line(:k))
-      line(k + 2 + number_width:) = new_line('a')
+      line(k + 1:) = new_line('a')
    end subroutine write_line
 
    !> Length of the line of a point with its end [bytes]
@@ -429,13 +435,21 @@ contains
       length = index_width + (1 + number_width)*(numbers + 1) + 1
    end function line_length
 
-   !> End of the line of a point: a blank and its check sum
-   pure function check_of(text) result(check)
-      !> The line up to there
-      character(len=*), intent(in) :: text
-      character(len=1 + number_width) :: check
+   !> Check sum of a point: rotating and exclusive-or are undone by their inverses, so that any change
+   !> of a single number changes the sum
+   pure function check_of(place, words) result(check)
+      !> Number of the point
+      integer, intent(in) :: place
+      !> Bits of its numbers
+      integer(int64), intent(in) :: words(:)
+      integer(int64) :: check
 
-      write (check, '(1x, z16.16)') iand(int(crc32(text, 0_int32), int64), 4294967295_int64)
+      integer :: i
+
+      check = place
+      do i = 1, size(words)
+         check = ieor(ishftc(check, 1), words(i))
+      end do
    end function check_of
 
    !> First line
@@ -494,33 +508,5 @@ contains
       if (self%is_open()) call remove_file(self%path)
       call self%close()
    end subroutine remove
-
-   !> Check sum of a text: CRC-32 as in zip, PNG and Ethernet (`zlib.crc32` of Python)
-   pure function crc32(text, before) result(crc)
-      character(len=*), intent(in) :: text
-      !> Check sum of the text before it; 0 if there is none
-      integer(int32), intent(in) :: before
-      integer(int32) :: crc
-
-      !> The divisor, the lowest power in the highest bit: 0xEDB88320
-      integer(int32), parameter :: divisor = -306674912_int32
-      !> Remainders of four bits; a line of a sweep is divided four bits at a time
-      integer(int32) :: remainders(0:15)
-      integer :: bit, i
-
-      do i = 0, 15
-         remainders(i) = int(i, int32)
-         do bit = 1, 4
-            remainders(i) = ieor(shiftr(remainders(i), 1), iand(remainders(i), 1_int32)*divisor)
-         end do
-      end do
-      crc = not(before)
-      do i = 1, len(text)
-         crc = ieor(crc, int(iachar(text(i:i)), int32))
-         crc = ieor(shiftr(crc, 4), remainders(iand(crc, 15_int32)))
-         crc = ieor(shiftr(crc, 4), remainders(iand(crc, 15_int32)))
-      end do
-      crc = not(crc)
-   end function crc32
 
 end module vcor_io_restart
