@@ -51,9 +51,6 @@ module vcor_material
       (model_parameter_t('table', table_parameters(i)), i=1, size(table_parameters)), &
       (model_parameter_t('rigid', rigid_parameters(i)), i=1, size(rigid_parameters))]
 
-   !> Maximum number of values: at least the number of different names
-   integer, parameter :: most_values = size(model_parameters) + size(shift_parameters) + 1
-
    !> A value: a number or a list
    type :: value_t
       !> Name of the parameter
@@ -82,8 +79,8 @@ module vcor_material
       character(len=:), allocatable, private :: unknown
       !> Number of values
       integer, private :: n = 0
-      !> The values
-      type(value_t), private :: value(most_values)
+      !> The values, shape (n)
+      type(value_t), allocatable, private :: value(:)
       !> Material made from the points of a table, once they have been fitted
       type(tabulated_t), allocatable, private :: fitted
    contains
@@ -130,13 +127,18 @@ contains
       !> Index, 0 if no model has such a parameter
       integer, intent(out) :: place
 
+      type(value_t), allocatable :: longer(:)
+
       place = self%place_of(name)
       if (place > 0) return
       if (name == density%name .or. any(model_parameters%parameter%name == name) &
           .or. any(shift_parameters%name == name)) then
-         self%n = self%n + 1
-         place = self%n
-         self%value(place)%name = name
+         place = self%n + 1
+         allocate (longer(place))
+         if (self%n > 0) longer(:self%n) = self%value
+         longer(place)%name = name
+         call move_alloc(longer, self%value)
+         self%n = place
       else if (.not. allocated(self%unknown)) then
          self%unknown = name
       end if
