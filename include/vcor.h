@@ -185,9 +185,10 @@ int vcor_warnings(vcor_case *self, int m, const char *const *addresses, int n, c
  * begin before the data of a fit (valid_from, valid_to) or of a table, or last longer, with the change of cor
  * that depends on it, and temperatures outside of those of a shift. `statuses`, `contact_times` and `cors`
  * are the columns status, contact_time and cor of the points. A line for each remark; `*text` is empty if the
- * data say all that matters, and NULL if no material has data of a known range. Of a fit it solves up to four
- * impacts more, while other calls wait: a single point (n = 1) is examined only if its contact is shorter or longer
- * than those before it of the same values but for velocity and drop height, else what was said of these is. */
+ * data say all that matters, and NULL if no material has data of a known range, which a call with n = 0 tells at
+ * once. Of a fit it solves up to four impacts more, while other calls wait: a single point (n = 1) is examined only
+ * if its contact is shorter or longer than those before it of the same values but for velocity and drop height,
+ * else what was said of these is. */
 int vcor_beyond_data(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                      const double *statuses, const double *contact_times, const double *cors,
                      char **text, vcor_error *error);

@@ -152,12 +152,18 @@ def _beyond_data(
     # what nobody hears takes two solutions
     if DataRangeWarning in _silent.get():
         return ""
-    text = c_void_p()
+    lines, texts = "", _library.texts(tuple(addresses))
+    columns = [*map(np.ascontiguousarray, (table, status, contact_time, cor))]
     with contextlib.suppress(Error):
-        call("vcor_beyond_data", case._pointer, len(addresses),
-             _library.texts(tuple(addresses)), len(table), np.ascontiguousarray(table),
-             *map(np.ascontiguousarray, (status, contact_time, cor)), byref(text))  # fmt: skip
-    return (_library.take_text(text) or "").strip("\n") if text else ""
+        # no point: whether there are data at all, which takes no thread of its own
+        for points in (0, len(table)):
+            text = c_void_p()
+            call("vcor_beyond_data", case._pointer, len(addresses), texts, points, *columns,
+                 byref(text))  # fmt: skip
+            if not text:
+                break
+            lines = _library.take_text(text) or ""
+    return lines.strip("\n")
 
 
 def of_columns(variables: Mapping[Any, Any]) -> dict[str, str]:

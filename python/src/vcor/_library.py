@@ -295,6 +295,8 @@ def call(name: str, *arguments: Any) -> str:
         # one number or point, which a loop asks for again and again
         or name == "vcor_time_factor"
         or (name == "vcor_warnings" and arguments[3] == 1)
+        # whether there are data
+        or (name == "vcor_beyond_data" and arguments[3] == 0)
     )
     code = function() if quick and _worker else _interruptible(function)
     message: str = error.message.decode(errors="replace")

@@ -49,7 +49,7 @@ contains
       call get_array(n, statuses, 'statuses', status, trouble)
       call get_array(n, contact_times, 'contact_times', contact_time, trouble)
       call get_array(n, cors, 'cors', cor, trouble)
-      if (.not. allocated(trouble) .and. n > 0) then
+      if (.not. allocated(trouble)) then
          allocate (outcomes%contact_time, outcomes%cor, source=contact_time)
          allocate (outcomes%known(n))
          outcomes%cor = cor
@@ -58,8 +58,12 @@ contains
          where (outcomes%known) outcomes%known = nint(status) == contact_separated
 !$omp critical (vcor_c_api)
          call find_places(handle%case, addresses, places, trouble)
-         if (.not. allocated(trouble)) call examine(handle, addresses, places, values, outcomes, &
-            lines, trouble)
+         if (.not. allocated(trouble)) then
+            if (has_data(handle%case)) then
+               lines = ''
+               if (n > 0) call examine(handle, addresses, places, values, outcomes, lines, trouble)
+            end if
+         end if
          if (.not. allocated(trouble) .and. allocated(lines)) &
             call put_copy(text, c_text(lines), trouble)
 !$omp end critical (vcor_c_api)
@@ -78,7 +82,7 @@ contains
       !> Values, shape (m, n)
       real(wp), intent(in) :: values(:, :)
       type(outcomes_t), intent(in) :: outcomes
-      !> A line for each remark; unallocated: no material has data of a known range
+      !> A line for each remark
       character(len=:), allocatable, intent(out) :: lines
       !> Error of the case, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -98,10 +102,8 @@ contains
          if (allocated(handle%examined)) is_alike = like(handle%examined)
       end if
       if (is_alike) then
-         if (allocated(handle%examined%lines)) lines = handle%examined%lines
-         if (.not. allocated(lines)) return
+         lines = handle%examined%lines
          if (handle%examined%shortest <= shortest .and. longest <= handle%examined%longest) return
-         deallocate (lines)
       end if
       if (size(places) == 0) then
          call build_own(handle, sweep, is_point, error)
@@ -109,13 +111,11 @@ contains
          call build_points(handle, places, values, sweep, error, addresses)
       end if
       if (allocated(error)) return
-      if (has_data(sweep%case)) then
-         call find_remarks(sweep%case, sweep%grid, outcomes, .true., remarks)
-         lines = ''
-         do i = 1, size(remarks)
-            lines = lines//trim(remarks(i))//new_line('a')
-         end do
-      end if
+      call find_remarks(sweep%case, sweep%grid, outcomes, .true., remarks)
+      lines = ''
+      do i = 1, size(remarks)
+         lines = lines//trim(remarks(i))//new_line('a')
+      end do
       if (.not. is_single) return
       if (.not. is_alike) then
          if (allocated(handle%examined)) deallocate (handle%examined)
@@ -127,7 +127,7 @@ contains
       end if
       handle%examined%shortest = min(shortest, handle%examined%shortest)
       handle%examined%longest = max(longest, handle%examined%longest)
-      if (allocated(lines)) handle%examined%lines = lines
+      handle%examined%lines = lines
 
    contains
 
@@ -138,9 +138,7 @@ contains
 
          yes = size(others%places) == size(places)
          if (yes) yes = all(others%places == places)
-         ! where no material has data no value gives it any
-         if (yes .and. allocated(others%lines)) &
-            yes = all(.not. matters .or. is_same(others%values, values(:, 1)))
+         if (yes) yes = all(.not. matters .or. is_same(others%values, values(:, 1)))
       end function like
    end subroutine examine
 

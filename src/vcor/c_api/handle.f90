@@ -38,8 +38,7 @@ module vcor_c_api_handle
       real(wp), allocatable :: values(:)
       !> Shortest and longest contact [s]
       real(wp) :: shortest = 0.0_wp, longest = 0.0_wp
-      !> What the data do not say about them, a line each; unallocated: no material has data of a
-      !> known range
+      !> What the data do not say about them, a line each
       character(len=:), allocatable :: lines
    end type examined_t
 
