@@ -181,14 +181,17 @@ int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, cons
 int vcor_warnings(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                   char **text, vcor_error *error);
 
+/* Whether a material of a body has data of a known range, 1 or 0: a fit with valid_from and the like, a table, or a
+ * table of shifts. Without any there is nothing to ask vcor_beyond_data. */
+int vcor_has_data(vcor_case *self, int *has, vcor_error *error);
+
 /* What the data behind the materials do not say about n points that vcor_solve has solved: contacts that
  * begin before the data of a fit (valid_from, valid_to) or of a table, or last longer, with the change of cor
  * that depends on it, and temperatures outside of those of a shift. `statuses`, `contact_times` and `cors`
  * are the columns status, contact_time and cor of the points. A line for each remark; `*text` is empty if the
- * data say all that matters, and NULL if no material has data of a known range, which a call with n = 0 tells at
- * once. Of a fit it solves up to four impacts more, while other calls wait: a single point (n = 1) is examined only
- * if its contact is shorter or longer than those before it of the same values but for velocity and drop height,
- * else what was said of these is. */
+ * data say all that matters, and NULL if no material has data of a known range. Of a fit it solves up to four
+ * impacts more, while other calls wait: a single point (n = 1) is examined only if its contact is shorter or longer
+ * than those before it of the same values but for velocity and drop height, else what was said of these is. */
 int vcor_beyond_data(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                      const double *statuses, const double *contact_times, const double *cors,
                      char **text, vcor_error *error);

@@ -90,6 +90,7 @@ def arguments(case):
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "text": byref(text),
         },
+        "vcor_has_data": {"case": case, "has": byref(count)},
         "vcor_beyond_data": {
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "statuses": doubles(0.0), "contact_times": doubles(1e-3), "cors": doubles(0.5),

@@ -2,12 +2,14 @@
 
 import pickle
 import warnings
+from ctypes import byref, c_int
 
 import numpy as np
 import pytest
 from conftest import PAPER
 
 import vcor
+from vcor import _library
 from vcor._coverage import unwarned
 
 SHEET = """
@@ -123,6 +125,13 @@ def test_loops_ask_again_when_they_must():
     assert case.solve({"impact.velocity": 1e-3}).beyond_data == ""
     case["butyl.valid_to"] = 1e-4
     assert case.solve().beyond_data != ""
+    del case["butyl.valid_to"]
+    for given, beyond in (({}, False), ({"butyl.valid_to": 1e-4}, True)):
+        for address, value in given.items():
+            case[address] = value
+        has = c_int(-1)
+        _library.call("vcor_has_data", case._pointer, byref(has))
+        assert has.value == beyond == bool(case.solve().beyond_data)
 
 
 def test_what_is_said_of_a_case_is_said_of_no_other():

@@ -9,7 +9,7 @@ import contextlib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
-from ctypes import byref, c_void_p
+from ctypes import byref, c_int, c_void_p
 from typing import Any
 
 import numpy as np
@@ -152,18 +152,15 @@ def _beyond_data(
     # what nobody hears takes two solutions
     if DataRangeWarning in _silent.get():
         return ""
-    lines, texts = "", _library.texts(tuple(addresses))
-    columns = [*map(np.ascontiguousarray, (table, status, contact_time, cor))]
+    has, text = c_int(), c_void_p()
+    call("vcor_has_data", case._pointer, byref(has))
+    if not has:
+        return ""
     with contextlib.suppress(Error):
-        # no point: whether there are data at all, which takes no thread of its own
-        for points in (0, len(table)):
-            text = c_void_p()
-            call("vcor_beyond_data", case._pointer, len(addresses), texts, points, *columns,
-                 byref(text))  # fmt: skip
-            if not text:
-                break
-            lines = _library.take_text(text) or ""
-    return lines.strip("\n")
+        call("vcor_beyond_data", case._pointer, len(addresses),
+             _library.texts(tuple(addresses)), len(table), np.ascontiguousarray(table),
+             *map(np.ascontiguousarray, (status, contact_time, cor)), byref(text))  # fmt: skip
+    return (_library.take_text(text) or "").strip("\n") if text else ""
 
 
 def of_columns(variables: Mapping[Any, Any]) -> dict[str, str]:

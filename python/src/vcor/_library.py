@@ -184,6 +184,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],
     "vcor_warnings": [c_void_p, c_int, _texts, c_int, _doubles, POINTER(c_void_p)],
+    "vcor_has_data": [c_void_p, POINTER(c_int)],
     "vcor_beyond_data": [
         c_void_p, c_int, _texts, c_int, _doubles, _doubles, _doubles, _doubles, POINTER(c_void_p),
     ],
@@ -274,7 +275,7 @@ os.register_at_fork(after_in_child=_forget_worker)
 #: Functions that end at once
 _QUICK = (
     "vcor_copy", "vcor_dump", "vcor_load", "vcor_name", "vcor_set", "vcor_unset", "vcor_get",
-    "vcor_describe", "vcor_catalogue",
+    "vcor_describe", "vcor_catalogue", "vcor_has_data",
 )  # fmt: skip
 #: Functions of a material, a microsecond a number at most, and for how many they end at once
 _MODULI, _FEW = ("vcor_relaxation", "vcor_complex_modulus"), 100_000
@@ -295,8 +296,6 @@ def call(name: str, *arguments: Any) -> str:
         # one number or point, which a loop asks for again and again
         or name == "vcor_time_factor"
         or (name == "vcor_warnings" and arguments[3] == 1)
-        # whether there are data
-        or (name == "vcor_beyond_data" and arguments[3] == 0)
     )
     code = function() if quick and _worker else _interruptible(function)
     message: str = error.message.decode(errors="replace")

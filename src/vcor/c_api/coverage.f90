@@ -5,7 +5,8 @@ module vcor_c_api_coverage
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_null_ptr, c_ptr
    use vcor_c_api_handle, only : build_own, build_points, examined_t, find_places, handle_t, &
       open_case, open_points, shortens_only
-   use vcor_c_api_values, only : c_text, demand, get_array, put_copy, put_pointer, report_error
+   use vcor_c_api_values, only : c_text, demand, get_array, put_copy, put_count, &
+      put_pointer, report_error
    use vcor_case_entries, only : address_t, operator(==)
    use vcor_case_inputs, only : is_same
    use vcor_error, only : error_t, error_usage, raise
@@ -16,9 +17,27 @@ module vcor_c_api_coverage
    implicit none
    private
 
-   public :: vcor_beyond_data
+   public :: vcor_has_data, vcor_beyond_data
 
 contains
+
+   !> Whether a material of a body has data of a known range
+   function vcor_has_data(self, has, error) bind(c) result(code)
+      type(c_ptr), value :: self, has, error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+
+      call open_case(self, handle, trouble)
+      call demand(has, 'has', trouble)
+      if (.not. allocated(trouble)) then
+!$omp critical (vcor_c_api)
+         call put_count(has, merge(1, 0, has_data(handle%case)))
+!$omp end critical (vcor_c_api)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_has_data
 
    !> Get what the data of the materials do not say about points that have been solved
    function vcor_beyond_data(self, m, address_list, n, value_table, statuses, contact_times, &
@@ -49,7 +68,7 @@ contains
       call get_array(n, statuses, 'statuses', status, trouble)
       call get_array(n, contact_times, 'contact_times', contact_time, trouble)
       call get_array(n, cors, 'cors', cor, trouble)
-      if (.not. allocated(trouble)) then
+      if (.not. allocated(trouble) .and. n > 0) then
          allocate (outcomes%contact_time, outcomes%cor, source=contact_time)
          allocate (outcomes%known(n))
          outcomes%cor = cor
@@ -59,10 +78,8 @@ contains
 !$omp critical (vcor_c_api)
          call find_places(handle%case, addresses, places, trouble)
          if (.not. allocated(trouble)) then
-            if (has_data(handle%case)) then
-               lines = ''
-               if (n > 0) call examine(handle, addresses, places, values, outcomes, lines, trouble)
-            end if
+            if (has_data(handle%case)) &
+               call examine(handle, addresses, places, values, outcomes, lines, trouble)
          end if
          if (.not. allocated(trouble) .and. allocated(lines)) &
             call put_copy(text, c_text(lines), trouble)
