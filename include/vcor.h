@@ -217,6 +217,11 @@ int vcor_complex_modulus(const vcor_case *self, const char *material, int n,
 /* Shift factor a_T of a material at impact.temperature, 1 for one without a shift */
 int vcor_time_factor(const vcor_case *self, const char *material, double *factor, vcor_error *error);
 
+/* Shift factors a_T of a material at n temperatures > 0 [K], whatever impact.temperature is; an error where its law
+ * does not hold at one of them */
+int vcor_time_factors(const vcor_case *self, const char *material, int n, const double *temperatures,
+                      double *factors, vcor_error *error);
+
 /* The case by all methods: for each row of VCOR_COMPARED the most accurate value, that by internal
  * variables (nan if they cannot solve it), that by product integration extrapolated to steps of no
  * length, and the number of digits that can be trusted: 4 numbers a row, nan where the bodies do not

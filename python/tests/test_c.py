@@ -107,6 +107,10 @@ def arguments(case):
             "storage": doubles(0.0), "loss": doubles(0.0),
         },
         "vcor_time_factor": {"case": case, "material": b"rubber", "factor": byref(number)},
+        "vcor_time_factors": {
+            "case": case, "material": b"rubber", "n?": 1, "temperatures": doubles(300.0),
+            "factors": doubles(0.0),
+        },
         "vcor_verify": {"case": case, "results": doubles(*[0.0] * 200)},
         "vcor_exact": {"case": case, "cor_sphere": byref(number)},
     }  # fmt: skip

@@ -361,6 +361,10 @@ def test_errors_of_files(tmp_path, program):
         (lambda case: case.material("rubber").relaxation(-1.0), "found a negative time"),
         (lambda case: case.material("rubber").complex_modulus([-1.0]),
          "found a negative frequency"),
+        (lambda case: case.material("rubber").time_factors([300.0, np.nan]),
+         "found a temperature that is not a number or infinite"),
+        (lambda case: case.material("rubber").time_factors([0.0]),
+         "found a temperature that is not positive"),
         (lambda case: vcor.Case("sls.nml"), "vcor.read reads a file"),
         (lambda case: vcor.Case(PAPER / "sls.nml"), "vcor.read reads a file"),
         (lambda case: vcor.Case(None), "found None, expected the text of a case or its groups"),
@@ -644,6 +648,31 @@ def test_moduli_at_a_temperature():
     case["impact.temperature"] = 310.0
     factor = 10 ** (-8.86 * 11.85 / (101.6 + 11.85))
     assert case.material("rubber").relaxation([1e-4 * factor]) == pytest.approx(plain, rel=1e-13)
+
+
+def test_shift_factors_at_temperatures(tmp_path):
+    """Those of the material at each temperature of the impact, whether this has one or not."""
+    case, temperatures = vcor.Case(rubber()), np.array([[290.0, 298.15], [310.0, 350.0]])
+    material = case.material("rubber")
+    law = -8.86 * (temperatures - 298.15) / (101.6 + temperatures - 298.15)
+    assert np.log10(material.time_factors(temperatures)) == pytest.approx(law, abs=1e-12)
+    case["impact.temperature"] = 310.0
+    assert material.time_factor() == material.time_factors([310.0])[0]
+    assert material.time_factors([]).shape == (0,)
+    with pytest.raises(vcor.InputError, match=r"temperature = 150\.0.*wlf_c2 = 101\.6"):
+        material.time_factors([310.0, 150.0])
+    # the case is as it was
+    assert float(case["impact.temperature"]) == 310.0
+    plain = vcor.Case(rubber(shift=False)).material("rubber")
+    assert (plain.time_factors(temperatures) == 1.0).all()
+    path = tmp_path / "shifts.csv"
+    path.write_text("temperature [K],log10_shift_factor [1]\n290,0.6\n298.15,0.0\n330,-2.0\n")
+    groups = rubber(shift=False)
+    groups["material"][1].update(shift="table", reference_temperature=298.15, shift_file=str(path))
+    table = vcor.Case(groups).material("rubber")
+    assert np.log10(table.time_factors([330.0, 298.15])) == pytest.approx([-2.0, 0.0], abs=1e-12)
+    with pytest.raises(vcor.InputError, match="not extrapolated"):
+        table.time_factors([331.0])
 
 
 def test_a_number_of_a_list():

@@ -89,6 +89,8 @@ module vcor_material
       procedure :: fit_points
       procedure :: number
       procedure :: list
+      !> a_T and b_T at its temperature
+      procedure :: find_factors
       procedure :: deforms_as
       procedure :: is_same_as
       procedure, private :: place_of
@@ -234,6 +236,22 @@ contains
       if (.not. allocated(list)) allocate (list(0))
    end function list
 
+   !> a_T and b_T at the temperature; both are 1 without a shift
+   pure subroutine find_factors(self, a, b, error)
+      class(material_data_t), intent(in) :: self
+      !> a_T [-]
+      real(wp), intent(out) :: a
+      !> b_T [-]
+      real(wp), intent(out) :: b
+      !> Error of code `error_input` where the law does not hold, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      call self%shift%find_factors(self%temperature, &
+         [(self%number(shift_parameters(i)%name), i=1, size(shift_parameters))], a, b, error)
+   end subroutine find_factors
+
    !> Whether two descriptions are the same in all numbers, at the same temperature; lists are
    !> compared by their identities
    pure function is_same_as(self, other) result(same)
@@ -305,14 +323,12 @@ contains
       !> Factors of times and of moduli
       real(wp) :: a, b
       real(wp) :: exponent, time
-      integer :: i
 
       if (allocated(data%unknown)) then
          call raise(error, error_input, "a material has no parameter '"//data%unknown//"'")
          return
       end if
-      call data%shift%find_factors(data%temperature, &
-         [(data%number(shift_parameters(i)%name), i=1, size(shift_parameters))], a, b, error)
+      call data%find_factors(a, b, error)
       if (allocated(error)) return
       if (data%is_shear) b = 2.0_wp*(1.0_wp + data%number('poisson_ratio'))*b
       select case (data%model)

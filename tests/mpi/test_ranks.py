@@ -59,11 +59,11 @@ def said(done):
     return [line for line in done.err.splitlines() if line.startswith("vcor: ")]
 
 
-def with_reference(folder, seconds):
+def with_reference(folder, seconds, *words):
     """A sweep that takes so long, and its files as one rank and one thread make them."""
     vcor = Vcor(folder)
     write_long_sweep(vcor, seconds)
-    done = vcor("run", "case.nml", "--output", "ref", "--threads", "1")
+    done = vcor("run", "case.nml", "--output", "ref", "--threads", "1", *words)
     assert done.code == NUMERICAL
     vcor.reference = done
     return vcor
@@ -94,8 +94,8 @@ def test_structures(vcor):
         "   density = 7850 /\n"
         "&sweep parameter = 'impact.velocity', values = 0.5, 1.0, 1.5, 2.0 /\n"
     )
-    assert vcor("run", "case.nml", "--output", "ref").code == SUCCESS
-    done = run(vcor, 3, "case.nml", "--output", "out")
+    assert vcor("run", "case.nml", "--output", "ref", "--quiet").code == SUCCESS
+    done = run(vcor, 3, "case.nml", "--output", "out", "--quiet")
     assert done.code == SUCCESS, done.err
     same_files(vcor.folder / "out", vcor.folder / "ref")
 
@@ -168,7 +168,7 @@ def begin_and_wait(vcor, ranks, known, *words):
 
 def test_killed_ranks(tmp_path):
     """All ranks end, whichever is killed, and what they did is not lost: the next run goes on."""
-    long = with_reference(tmp_path, 6.0)
+    long = with_reference(tmp_path, 6.0, "--quiet")
     part, done = long.folder / "out" / PART, 0
     for number, victim in itertools.product([signal.SIGKILL, signal.SIGTERM], [0, 1]):
         process = begin_and_wait(long, 2, done, "--resume")
@@ -181,7 +181,7 @@ def test_killed_ranks(tmp_path):
         assert done_in(part) > done
         done = done_in(part)
         assert {path.name for path in part.parent.iterdir()} == {PART}
-    assert run(long, 3, "case.nml", "--output", "out", "--resume").code == NUMERICAL
+    assert run(long, 3, "case.nml", "--output", "out", "--resume", "--quiet").code == NUMERICAL
     same_files(long.folder / "out", long.folder / "ref")
 
 

@@ -193,6 +193,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
     "vcor_time_factor": [c_void_p, c_char_p, POINTER(c_double)],
+    "vcor_time_factors": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_verify": [c_void_p, _doubles],
     "vcor_exact": [c_void_p, POINTER(c_double)],
 }  # fmt: skip
@@ -278,7 +279,8 @@ _QUICK = (
     "vcor_describe", "vcor_catalogue", "vcor_has_data",
 )  # fmt: skip
 #: Functions of a material, a microsecond a number at most, and for how many they end at once
-_MODULI, _FEW = ("vcor_relaxation", "vcor_complex_modulus"), 100_000
+_MODULI = ("vcor_relaxation", "vcor_complex_modulus", "vcor_time_factors")
+_FEW = 100_000
 
 
 def call(name: str, *arguments: Any) -> str:

@@ -57,3 +57,14 @@ class Material:
         factor = c_double()
         call("vcor_time_factor", self._case._pointer, self.name, byref(factor))
         return factor.value
+
+    def time_factors(self, temperatures: ArrayLike) -> NDArray[np.float64]:
+        """Shift factors a_T at temperatures > 0 [K], in their shape; 1 without a shift.
+
+        InputError: the law of the shift does not hold at one of them.
+        """
+        t = numbers(temperatures, "temperatures", np.inf, "numbers")
+        factors = np.empty(t.size)
+        given = self._case._pointer, self.name, t.size, t.ravel()
+        call("vcor_time_factors", *given, factors)
+        return factors.reshape(t.shape)

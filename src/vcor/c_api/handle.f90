@@ -24,7 +24,8 @@ module vcor_c_api_handle
    private
 
    public :: examined_t, handle_t, open_case, open_points, find_place, find_places, follow
-   public :: whole_folder, note, forget, build, build_points, build_own, find_body, shortens_only
+   public :: whole_folder, note, forget, build, build_points, build_own, find_item, find_body, &
+      shortens_only
 
    !> Most numbers that are set from call to call
    integer, parameter :: most_tuned = 16
@@ -354,18 +355,20 @@ contains
       call build_points(handle, nowhere, nothing, sweep, error)
    end subroutine build_own
 
-   !> Build a material of a case
-   subroutine find_body(self, name, material, error)
+   !> Find a material of a case
+   subroutine find_item(self, name, case, item, error)
       type(c_ptr), intent(in) :: self
       !> Name of the material
       type(c_ptr), intent(in) :: name
-      class(material_t), allocatable, intent(out) :: material
+      !> The case, checked
+      type(case_t), intent(out) :: case
+      !> Index of the material
+      integer, intent(out) :: item
       type(error_t), allocatable, intent(out) :: error
 
       type(handle_t), pointer :: handle
-      type(case_t) :: case
-      integer :: item
 
+      item = 0
       call open_case(self, handle, error)
       call demand(name, 'material', error)
       if (allocated(error)) return
@@ -379,7 +382,24 @@ contains
       else
          call check(case, error)
       end if
-      if (.not. allocated(error)) call material_of_case(case, item, material, error)
+!$omp end critical (vcor_c_api)
+   end subroutine find_item
+
+   !> Build a material of a case
+   subroutine find_body(self, name, material, error)
+      type(c_ptr), intent(in) :: self
+      !> Name of the material
+      type(c_ptr), intent(in) :: name
+      class(material_t), allocatable, intent(out) :: material
+      type(error_t), allocatable, intent(out) :: error
+
+      type(case_t) :: case
+      integer :: item
+
+      call find_item(self, name, case, item, error)
+      if (allocated(error)) return
+!$omp critical (vcor_c_api)
+      call material_of_case(case, item, material, error)
 !$omp end critical (vcor_c_api)
    end subroutine find_body
 

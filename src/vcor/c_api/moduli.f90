@@ -2,15 +2,17 @@
 module vcor_c_api_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_ptr
-   use vcor_c_api_handle, only : find_body
+   use vcor_c_api_handle, only : find_body, find_item
    use vcor_c_api_values, only : get_array, report_error
+   use vcor_case_body, only : time_factors_of_case
+   use vcor_case_case, only : case_t
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: vcor_relaxation, vcor_complex_modulus, vcor_time_factor
+   public :: vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_time_factors
 
 contains
 
@@ -95,5 +97,36 @@ contains
       if (.not. allocated(trouble)) place = body%time_factor
       code = report_error(trouble, error)
    end function vcor_time_factor
+
+   !> Get the factors by which temperatures multiply all times of a material
+   function vcor_time_factors(self, material, n, temperatures, factors, error) bind(c) result(code)
+      type(c_ptr), value :: self, material
+      integer(c_int), value :: n
+      type(c_ptr), value :: temperatures, factors, error
+      integer(c_int) :: code
+
+      type(case_t) :: case
+      type(error_t), allocatable :: trouble
+      real(c_double), pointer :: kelvin(:), factor(:)
+      integer :: item
+
+      call find_item(self, material, case, item, trouble)
+      call get_array(n, temperatures, 'temperatures', kelvin, trouble)
+      call get_array(n, factors, 'factors', factor, trouble)
+      if (.not. allocated(trouble)) then
+         if (.not. all(ieee_is_finite(kelvin))) call raise(trouble, error_input, &
+            'found a temperature that is not a number or infinite, expected them > 0 [K]')
+      end if
+      if (.not. allocated(trouble)) then
+         if (.not. all(kelvin > 0.0_wp)) call raise(trouble, error_input, &
+            'found a temperature that is not positive, expected them > 0 [K]')
+      end if
+      if (.not. allocated(trouble)) then
+!$omp critical (vcor_c_api)
+         call time_factors_of_case(case, item, kelvin, factor, trouble)
+!$omp end critical (vcor_c_api)
+      end if
+      code = report_error(trouble, error)
+   end function vcor_time_factors
 
 end module vcor_c_api_moduli

@@ -14,7 +14,7 @@ module vcor_case_body
    implicit none
    private
 
-   public :: read_material, material_of_case
+   public :: read_material, material_of_case, time_factors_of_case
 
    !> Reason why the shift of a material is not read
    character(len=*), parameter :: without_temperature = &
@@ -42,6 +42,47 @@ contains
       error%item = item
       call explain(case, error)
    end subroutine material_of_case
+
+   !> Shift factors of a material at temperatures of the impact
+   subroutine time_factors_of_case(case, item, temperatures, factors, error)
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> Index of the material
+      integer, intent(in) :: item
+      !> Temperatures [K], > 0, shape (n)
+      real(wp), intent(in) :: temperatures(:)
+      !> a_T there [-], 1 for a material without a shift, shape (n)
+      real(wp), intent(out) :: factors(:)
+      !> Error of code `error_input` with the place of its cause, for the first temperature at which
+      !> the law does not hold; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(case_t) :: there
+      type(address_t) :: address
+      type(material_data_t) :: data
+      type(reading_t) :: reading
+      real(wp) :: b
+      integer :: i
+
+      there = case
+      address = there%address('impact', 'temperature')
+      do i = 1, size(temperatures)
+         if (i == 1) then
+            ! without a temperature no shift is read
+            call there%set(address, temperatures(i))
+            call reading%start(there)
+            call read_material(there, item, reading, data)
+         else if (data%shift%law /= '') then
+            data%temperature = temperatures(i)
+         end if
+         call data%find_factors(factors(i), b, error)
+         if (.not. allocated(error)) cycle
+         call there%set(address, temperatures(i))
+         error%item = item
+         call explain(there, error)
+         return
+      end do
+   end subroutine time_factors_of_case
 
    !> Read a material. Its density is not recorded as read: the impact may have no use for it
    subroutine read_material(case, item, reading, data)

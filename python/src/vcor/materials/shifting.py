@@ -9,10 +9,9 @@ nothing about the shift; the loss modulus of a rubber does.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -251,17 +250,40 @@ class Law:
 
 
 def log_shift(values: Mapping[str, float], t: Floats, reference: float) -> Floats:
-    """log10 a_T of a material by the constants of a law; nan where they allow no temperature."""
-    law = "wlf" if "wlf_c1" in values else "arrhenius"
-    keys = "".join(f", {key} = {value!r}" for key, value in values.items())
-    found = np.full(len(t), np.nan)
-    with contextlib.suppress(Error):
-        case = Case(_CASE.format(law, reference, keys))
-        material = case.material("m")
-        for i, kelvin in enumerate(t):
-            case["impact.temperature"] = float(kelvin)
-            found[i] = math.log10(material.time_factor())
-    return found
+    """log10 a_T by the constants of a law; nan if they do not allow all temperatures."""
+    return _Shifts(values, t, reference)(values)
+
+
+class _Shifts:
+    """log10 a_T of a material at temperatures, by constants of a law that change from call to call.
+
+    Parameters
+    ----------
+    keys
+        Keys of the constants.
+    t
+        Temperatures [K], shape (n,).
+    reference
+        Reference temperature [K].
+    """
+
+    def __init__(self, keys: Iterable[str], t: Floats, reference: float) -> None:
+        """Make a case with such a material; the constants come with each call."""
+        constants = "".join(f", {key} = 1.0" for key in keys)
+        law = "wlf" if "wlf_c1" in constants else "arrhenius"
+        self._case = Case(_CASE.format(law, reference, constants))
+        self._material = self._case.material("m")
+        self._t = t
+
+    def __call__(self, values: Mapping[str, float]) -> Floats:
+        """log10 a_T, shape (n,); nan if the constants do not allow all temperatures."""
+        try:
+            for key, value in values.items():
+                self._case[f"m.{key}"] = value
+            found: Floats = np.log10(self._material.time_factors(self._t))
+        except Error:
+            return np.full(len(self._t), np.nan)
+        return found
 
 
 def _errors_of_wlf(
@@ -301,10 +323,12 @@ def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: floa
         if seen.sum() < len(start):
             continue
 
-        def misfit(x: Floats, keys: tuple[str, ...] = tuple(start)) -> Floats:
-            constants = dict(zip(keys, np.exp(x).tolist(), strict=True))
-            law: Floats = np.diff(log_shift(constants, temperatures, reference))
-            return ((law - steps) / errors)[seen]
+        shifts = _Shifts(start, temperatures, reference)
+
+        def misfit(x: Floats, start: dict[str, float] = start, shifts: _Shifts = shifts) -> Floats:
+            law = np.diff(shifts(dict(zip(start, np.exp(x).tolist(), strict=True))))
+            found: Floats = ((law - steps) / errors)[seen]
+            return found
 
         begin = np.log(list(start.values()))
         if not np.isfinite(misfit(begin)).all():
