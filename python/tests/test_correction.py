@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import types
 import warnings
 
 import numpy as np
@@ -13,6 +14,11 @@ from conftest import PAPER, ROOT
 import vcor
 from vcor import _command, uncertainty_samples
 from vcor._correction import Coordinates, Correction, parts_of
+from vcor._kriging import Kriged
+from vcor.materials import identification_exact
+from vcor.materials.limits import Fit
+from vcor.materials.observations import observations
+from vcor.materials.search import Problem
 from vcor.uncertainty import Drawn, _propagate
 from vcor.uncertainty_samples import ACCURATE, sampled
 from vcor.uncertainty_sweep import _bands
@@ -398,11 +404,12 @@ def test_identification_with_exact_mechanics():
     found = vcor.identify(guess, data, free)
     for one in found.estimates:
         # noise-free data: what is off is the error of the correction and of the minimum
-        assert abs(one.value - case[one.address]) < 0.1 * one.standard_error
+        assert abs(one.value - case[one.address]) < 0.01 * one.standard_error
         low, high = one.interval_95
         assert low < case[one.address] < high
-    assert 0 < found.fresh < found.solved < 400 and 0 < found.correction < 0.1
-    assert found.chi2 < 0.1
+    # a guess, four solutions, two rows beside the last one, it and the four ends of intervals
+    assert found.fresh == 3 * 5 and found.solved <= 3 * (1 + 4 + 2 + 5)
+    assert 0 < found.correction < 0.01 and found.chi2 < 1e-3
     assert f"with a correction from {found.solved} exact impacts" in str(found)
     assert found.as_dict()["solved"] == found.solved
     # the band is that of the exact impacts
@@ -413,6 +420,113 @@ def test_identification_with_exact_mechanics():
     name = "cor_sphere" if "cor_sphere" in found.band else "cor"
     assert found.band[name][20] == pytest.approx(wanted, abs=1e-4)
     assert middle[20] == pytest.approx(wanted, abs=1e-4)
+
+
+def test_the_minimum_is_that_of_exact_impacts():
+    """Of coefficients with noise; with one correction for all parameters it is 0.1 errors off."""
+    case, data = exact_drops(np.geomspace(0.1, 1.0, 6))
+    free = ["rubber.alpha", "rubber.beta"]
+    del data["contact_time"], data["contact_time_sigma"]
+    noise = np.random.default_rng(3).standard_normal(6)
+    data["cor_sphere"] *= 1 + 0.005 * noise
+    data["cor_sphere_sigma"] /= 2
+    case["rubber.alpha"], case["rubber.beta"] = 390.0, 960.0
+    found = vcor.identify(case, data, free)
+    assert found.solved <= 100 and found.correction < 0.01
+    # Gauss and Newton by differences of exact impacts over a tenth of a standard error
+    x = np.log([one.value for one in found.estimates])
+    values, vectors = np.linalg.eigh(found.covariance)
+    steps = 0.05 * (vectors * np.sqrt(values)).T
+    table = np.exp(np.vstack([x, x + steps, x - steps]))
+    case["solver.accuracy"] = 1e-5
+    exact = np.array([
+        case.points({"impact.velocity": data["velocity"], **dict(zip(free, row, strict=True))},
+                    ["cor_sphere"]).cor_sphere.values
+        for row in table
+    ])  # fmt: skip
+    r = (exact - data["cor_sphere"]) / data["cor_sphere_sigma"]
+    slopes = (r[1:3] - r[3:]).T / 0.1
+    assert np.allclose(slopes.T @ slopes, np.eye(2), atol=5e-3)
+    assert np.linalg.norm(slopes.T @ r[0]) < 0.01
+    assert found.chi2 == pytest.approx(r[0] @ r[0], abs=1e-3)
+
+
+def corrected_drops():
+    """A problem of two exact drops, thin mechanics corrected at its guess and its least squares."""
+    case, data = exact_drops(np.array([0.1, 0.9]))
+    free = ["rubber.glassy_modulus", "rubber.beta"]
+    case["solver.accuracy"] = 1e-5
+    blocks = observations(case, data, free)
+    bar = types.SimpleNamespace(update=lambda _: None)
+    problem = Problem(case, free, blocks, {}, bar)
+    x, chi2 = identification_exact.corrected(problem, 1)
+    best = Fit(problem, x, chi2, *problem.derivatives(x))
+    return problem, best, [best.intervals(i) for i in range(2)]
+
+
+def test_intervals_with_another_number_of_contacts_are_solved(monkeypatch):
+    """A correction is not fitted across such a jump, nor where there is no result."""
+    problem, best, limits = corrected_drops()
+    made = problem.corrected
+    solve = identification_exact.Corrected.solve
+
+    def with_jump(self, x):
+        exact, contacts = solve(self, x)
+        contacts[-1, 0] = self.contacts[-1, 0] = 2
+        return exact, contacts
+
+    def with_gap(self, x):
+        exact, contacts = solve(self, x)
+        exact[-1, 0] = self.exact[-1, 0] = np.nan
+        return exact, contacts
+
+    for one in (with_jump, with_gap):
+        problem.correct(made)
+        monkeypatch.setattr(identification_exact.Corrected, "solve", one)
+        assert not identification_exact.is_exact(best, limits, 1)
+        assert problem.corrected is None
+    monkeypatch.undo()
+    problem.correct(made)
+    assert identification_exact.is_exact(best, limits, 1) and made.error < 0.01
+    # without a correction it is met
+    problem.correct(None)
+    assert identification_exact.is_exact(best, limits, 1)
+
+
+def test_ends_that_are_off_are_met_again(monkeypatch):
+    problem, best, limits = corrected_drops()
+    made = problem.corrected
+    known = len(made.known)
+    predict = problem.predict
+    off = made.predict(np.exp(best.x[None]))[0][0]
+
+    def wrong(x, near=None):
+        found = predict(x, near)
+        # at the last point, an end
+        found[-1] += 0.1 * problem.sigma
+        return found
+
+    monkeypatch.setattr(problem, "predict", wrong)
+    assert not made.meets(best, limits)
+    monkeypatch.undo()
+    assert made.off == [(1, 1)] and len(made.known) == known + 5
+    assert made.meets(best, limits) and made.off == [] and made.fresh == 2 * made.impacts
+    assert np.allclose(made.predict(np.exp(best.x[None]))[0][0], off, rtol=1e-4)
+
+
+def test_interpolation_from_few_points():
+    """It meets what is known, has slopes where points are, and leaves that along no other way."""
+    points = np.array([[0.0, 0.0], [0.1, 0.0]])
+    values = np.array([[1.0, 2.0], [1.1, 2.0]])
+    found = Kriged(points, values)(np.array([[0.0, 0.0], [0.1, 0.0], [0.05, 0.0], [0.1, 0.1]]))
+    assert np.allclose(found[:2], values, atol=1e-6)
+    assert np.allclose(found[2:, 0], [1.05, 1.1], atol=2e-3) and np.allclose(found[:, 1], 2)
+    assert np.allclose(Kriged(points[:1], values[:1])(np.ones((3, 2))), values[0])
+    # of a smooth function, better with each point: by its second and third order, and beyond
+    x = np.random.default_rng(1).uniform(-0.3, 0.3, (60, 2))
+    smooth = np.exp(x @ [0.5, -0.3])[:, None]
+    errors = [np.abs(Kriged(x[:n], smooth[:n])(x[30:]) - smooth[30:]).max() for n in (1, 5, 12, 20)]
+    assert errors[0] > 0.1 and errors[1] < 0.02 and errors[2] < 2e-3 and errors[3] < 5e-4
 
 
 def test_cheap_impacts_are_identified_without_a_correction():
@@ -432,8 +546,9 @@ def test_exact_intervals_are_those_of_solved_impacts(monkeypatch):
     two = vcor.identify(case, data, free)
     assert one.solved > 0 == two.solved
     for mine, wanted in zip(one.estimates, two.estimates, strict=True):
-        assert abs(mine.value - wanted.value) < 0.05 * wanted.standard_error
-        assert mine.standard_error == pytest.approx(wanted.standard_error, rel=0.02)
+        assert abs(mine.value - wanted.value) < 0.01 * wanted.standard_error
+        assert mine.standard_error == pytest.approx(wanted.standard_error, rel=0.01)
         for key in ("interval_68", "interval_95"):
             ends = np.array(getattr(mine, key)) - getattr(wanted, key)
-            assert (np.abs(ends) < 0.05 * wanted.standard_error).all()
+            # the ends of a profile are met to 0.5 % of its width
+            assert (np.abs(ends) < 0.025 * wanted.standard_error).all()

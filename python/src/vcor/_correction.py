@@ -131,7 +131,7 @@ class Correction:
             for one, values in [(None, np.ones_like(exact)), *parts.items()]:
                 part = values[:, k]
                 is_ratio = one is None or one[1]
-                if not np.isfinite(part).all() or is_ratio and not _divides(part):
+                if not np.isfinite(part).all() or is_ratio and not divides(part):
                     continue
                 wanted, factor = (column / part, part) if is_ratio else (column - part, 1.0)
                 components = q.T @ wanted
@@ -159,7 +159,7 @@ class Correction:
         return found
 
 
-def _divides(values: Floats) -> bool:
+def divides(values: Floats) -> bool:
     """Whether results may be divided by values: they are of one sign, and not near 0."""
     size = np.abs(values)
     return bool(np.ptp(np.sign(values)) == 0 and size.min() > LEAST_PART * size.max())

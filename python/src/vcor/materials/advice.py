@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import warnings
 from collections.abc import Sequence
@@ -92,24 +93,27 @@ def next_measurement(problem: Problem, x: Floats, covariance: Floats) -> str:
     case, free, speeds = problem.case, problem.free, problem.speeds
     grid = np.geomspace(speeds.min() / NEXT_REACH, speeds.max() * NEXT_REACH, 13)
     trial = probe(case, grid)
-    measured = (grid >= speeds.min()) & (grid <= speeds.max())
-    with warnings.catch_warnings():
-        # no one has given these velocities
-        warnings.simplefilter("ignore", UnitWarning)
-        feasible = measured | [kind != "outside" for kind, _ in trial.validity(case)]
     slopes = problem.elasticities(x, trial, NEXT) / NEXT_ERROR
     now = np.diag(covariance)
-    best, where = 1.0, None
-    for j, row in enumerate(slopes):
-        if not (np.isfinite(row).all() and feasible[j // len(NEXT)]):
-            continue
-        # one datum more takes a matrix of rank 1 from the covariance
-        seen = covariance @ row
-        left = float((now - seen**2 / (1 + row @ seen)).max() / now.max())
-        if left < best:
-            best, where = left, j
-    if where is None or best > HELPS**2:
+    # one datum more takes a matrix of rank 1 from the covariance
+    seen = slopes @ covariance
+    left = (now - seen**2 / (1 + np.sum(slopes * seen, axis=1))[:, None]).max(axis=1) / now.max()
+
+    @functools.cache
+    def is_feasible(speed: float) -> bool:
+        """Whether such an impact has been measured, or the model holds for it."""
+        if speeds.min() <= speed <= speeds.max():
+            return True
+        with warnings.catch_warnings():
+            # no one has given these velocities
+            warnings.simplefilter("ignore", UnitWarning)
+            return probe(case, np.array([speed])).validity(case)[0][0] != "outside"
+
+    helps = np.argsort(left, kind="stable")[: np.sum(left <= HELPS**2)]
+    where = next((int(j) for j in helps if is_feasible(float(grid[j // len(NEXT)]))), None)
+    if where is None:
         return "no single further impact would help much"
+    best = float(left[where])
     name, speed = NEXT[where % len(NEXT)], grid[where // len(NEXT)]
     worst = free[int(np.argmax(now))]
     before, after = (percent(math.sqrt(part * now.max())) for part in (1.0, max(best, 0.0)))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.special import chdtri, ndtri
 
 from .. import _command, _library
@@ -29,7 +30,7 @@ from ..progress import progress_bar
 from .advice import next_measurement, not_determined, probe, product
 from .data import Columns, Units, add_data_options, columns_option
 from .fit import fit
-from .identification_exact import Corrected, corrected
+from .identification_exact import Corrected, corrected, is_exact
 from .identification_report import figure, report
 from .identified import DATUM, Estimate, Identified, Tangent
 from .limits import BESIDE, OPEN, Better, Fit, Interval
@@ -62,6 +63,8 @@ ALIKE = 0.01
 FOLLOWS = 1e-3
 #: Mean square of misfits, in their errors, below which rounding and the solution explain them
 UNSEEN = 0.5
+#: Velocities of the band of a prediction, and of how many of them one is solved exactly
+BAND, BAND_STEP = 41, 4
 #: Keys of a material that stay with another model
 KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_temperature",
         "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift", "valid_temperature_from",
@@ -192,14 +195,22 @@ def _deserved(blocks: Sequence[Block], errors: Mapping[str, float]) -> float:
 
 def _determined(problem: Problem, x: Floats, chi2: float) -> tuple[Fit, list[list[Interval]]]:
     """The best fit and the intervals of all parameters; refused if the data do not limit one."""
-    for _ in range(BETTER):
-        best = _beside_guess(Fit(problem, x, chi2, *problem.derivatives(x)))
+    better = meetings = 0
+    limits: list[list[Interval]] = []
+    while better < BETTER:
+        best = _beside_guess(Fit(problem, x, chi2, *problem.derivatives(x), limits))
         try:
             if (free := best.free()) is not None:
                 raise NumericalError(not_determined(problem, x, best.lost(free)))
-            return best, [best.intervals(i) for i in range(len(x))]
-        except Better as better:
-            x, chi2 = problem.settle(better.x)
+            limits = [best.intervals(i) for i in range(len(x))]
+        except Better as found:
+            better += 1
+            x, chi2 = problem.settle(found.x)
+            continue
+        meetings += 1
+        if is_exact(best, limits, meetings):
+            return best, limits
+        x, chi2 = problem.settle(best.x)
     raise NumericalError(f"{problem.case.name}: the sum of squares has many minima, and the best "
                          "of them was not found: give a guess that is closer")  # fmt: skip
 
@@ -337,7 +348,7 @@ def _validity(problem: Problem, case: Case) -> str:
 
 def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
     """Prediction of cor, or cor_sphere, against velocity with its 95 % band."""
-    grid = np.geomspace(problem.speeds.min() / 2, problem.speeds.max() * 2, 41)
+    grid = np.geomspace(problem.speeds.min() / 2, problem.speeds.max() * 2, BAND)
     name = "cor_sphere" if {"cor", "cor_sphere"} & {*problem.quantity} == {"cor_sphere"} else "cor"
     trial = probe(problem.case, grid, name)
 
@@ -348,9 +359,15 @@ def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[flo
     deviation = np.sqrt(np.einsum("ij,jk,ik->i", slope, covariance, slope))
     middle, half = cor(np.zeros((1, len(x))))[0], float(ndtri(0.975)) * deviation
     if problem.corrected:
-        # thin mechanics have the width in parts of the coefficient
-        exact = trial.predict(problem.case, problem.free, np.exp(x)[None])[0]
-        middle, half = exact, half * exact / middle
+        # thin mechanics have the width in parts of the coefficient, exact ones change it smoothly
+        some = grid[::BAND_STEP]
+        exact = probe(problem.case, some, name).predict(problem.case, problem.free, np.exp(x)[None])
+        ratio = exact[0] / middle[::BAND_STEP]
+        if np.isfinite(ratio).all():
+            ratio = CubicSpline(np.log(some), ratio)(np.log(grid))
+        else:
+            ratio = trial.predict(problem.case, problem.free, np.exp(x)[None])[0] / middle
+        middle, half = middle * ratio, half * ratio
     columns = {"velocity": grid, name: middle, "low": middle - half, "high": middle + half}
     good = np.isfinite(middle)
     return {name: column[good].tolist() for name, column in columns.items()}
@@ -371,12 +388,14 @@ def _tangents(problem: Problem, x: Floats, covariance: Floats) -> Iterator[Tange
     for some in rows.values():
         velocity, at, block, i = sorted(some, key=lambda one: one[0])[len(some) // 2]
 
-        def results(steps: Floats, block: Impacts = block, i: int = i) -> Floats:
+        def results(
+            steps: Floats, model: Case = problem.quick, block: Impacts = block, i: int = i
+        ) -> Floats:
             values, names = np.exp(x + steps), ["peak_loss_tangent", "contact_time"]
-            found = block.quantities(case, free, values, names, np.array([i]), np.exp(x))
+            found = block.quantities(model, free, values, names, np.array([i]), np.exp(x))
             return found[:, 0]
 
-        tangent, time = results(np.zeros((1, len(x))))[0]
+        tangent, time = results(np.zeros((1, len(x))), case)[0]
         if not np.isfinite(tangent):
             continue
         slope = slopes(results, len(x), STEP)[0]

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -54,11 +54,15 @@ class Interval(NamedTuple):
     high: float
     #: Whether the data set an end of it, and not only the ranges of parameters
     limited: bool
+    #: Logarithms of all parameters at the lower and the upper end, or as far as was followed
+    ends: tuple[Floats, Floats]
 
 
 class _End(NamedTuple):
     at: float
     by_data: bool
+    #: Logarithms of all parameters there, or as far as the path was followed
+    x: Floats
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,10 @@ class Fit:
     #: Derivatives of the residuals, shape (data, parameters), and their error, a norm
     slopes: Floats
     error: float
+    #: Intervals of a fit nearby, whose ends are tried first
+    before: Sequence[Sequence[Interval]] = ()
+    #: Intervals that were found, by the parameter and those that were held
+    found: dict[tuple[int, ...], list[Interval]] = field(default_factory=dict, init=False)
 
     def covariance(self, held: Sequence[int] = ()) -> Floats:
         """Covariance of the logarithms while some of them are held: rows and columns of 0.
@@ -99,12 +107,17 @@ class Fit:
 
     def intervals(self, i: int, held: Sequence[int] = ()) -> list[Interval]:
         """Profile intervals of a parameter, one of each of LEVELS, while some others are held."""
+        if (i, *held) not in self.found:
+            self.found[i, *held] = self._intervals(i, held)
+        return self.found[i, *held]
+
+    def _intervals(self, i: int, held: Sequence[int]) -> list[Interval]:
         estimated, dof = self.problem.noise.estimated, self.problem.dof
         halves = [(1 + level) / 2 for level in LEVELS]
         widths = [float(stdtrit(dof, one) if estimated else ndtri(one)) for one in halves]
         low, high = (_Profile(self, i, side, held).ends(widths) for side in (-1, 1))
         return [
-            Interval(below.at, above.at, below.by_data or above.by_data)
+            Interval(below.at, above.at, below.by_data or above.by_data, (below.x, above.x))
             for below, above in zip(low, high, strict=True)
         ]
 
@@ -150,6 +163,8 @@ class _Profile:
         self.low[sure], self.high[sure] = problem.low[sure], problem.high[sure]
         self.error = math.sqrt(covariance[i, i])
         self.slope_of_others = covariance[i] / covariance[i, i]
+        #: Points that are tried first for each level
+        self.hints = [one.ends[side > 0] for one in fit.before[i]] if fit.before else []
 
     def ends(self, widths: Sequence[float]) -> list[_End]:
         """Logarithms at which the sum of squares is larger by width^2; inf where it never is.
@@ -165,24 +180,29 @@ class _Profile:
         ends = []
         for width in widths:
             outside = [one for one in outside if one[1] > width]
-            end = self.not_followed(inside)
+            end = self.not_followed(inside, point)
+            hint = self.hints.pop(0) if self.hints else None
             for _ in range(MOST if inside < self.reach else 0):
-                if outside:
+                ahead = self.side * (hint[self.i] - self.fit.x[self.i]) if hint is not None else 0
+                if inside < ahead < (outside[-1][0] if outside else self.reach):
+                    step = ahead - inside
+                elif outside:
                     far, z_far, _ = outside[-1]
                     step = (far - inside) * max(0.05, (width - z) / (z_far - z))
                 else:
                     step = (width - z) / max(rate, 1e-300)
                     step = min(step, 2 * inside + LONGEST, longest, self.reach - inside)
                 trial = inside + step
-                found_at, rise = self.least(point, trial, step, width)
-                here = self.end(found_at, rise, inside)
+                found_at, rise = self.least(point, trial, step, width, hint)
+                hint = None
+                here = self.end(found_at, rise, inside, point)
                 if rise < width:
                     if rise > z:
                         self.slope_of_others = self.side * (found_at - point) / step
                     rate, longest = max(rise - z, 0.0) / step, 2 * longest
                     inside, z, point = trial, rise, found_at
                     if inside >= self.reach or math.isinf(here.at):
-                        end = self.not_followed(inside)
+                        end = self.not_followed(inside, point)
                         break
                 elif rise < STEEP * width or not here.by_data and math.isfinite(rise):
                     outside.append((trial, rise, here))
@@ -196,30 +216,33 @@ class _Profile:
                     break
                 if longest < CLOSED * inside:
                     # data make no such jump where they made no rise
-                    at = _End(self.fit.x[self.i] + self.side * inside, False)
-                    end = at if math.isinf(rise) else self.not_followed(inside)
+                    at = _End(self.fit.x[self.i] + self.side * inside, False, point)
+                    end = at if math.isinf(rise) else self.not_followed(inside, point)
                     break
             ends.append(end)
         return ends
 
-    def not_followed(self, distance: float) -> _End:
+    def not_followed(self, distance: float, x: Floats) -> _End:
         """An end beyond which the path is not followed: open, but for that of a range."""
         problem, i = self.fit.problem, self.i
         at = float(self.fit.x[i] + self.side * distance)
         last = problem.high[i] if self.side > 0 else problem.low[i]
         of_range = abs(at - last) < BESIDE and abs(last - problem.guess[i]) < FARTHEST - BESIDE
-        return _End(at if of_range else self.side * math.inf, False)
+        return _End(at if of_range else self.side * math.inf, False, x)
 
     def least(
-        self, point: Floats, trial: float, ahead: float, width: float
+        self, point: Floats, trial: float, ahead: float, width: float, hint: Floats | None
     ) -> tuple[Floats, float]:
-        """Where the least sum of squares is at a distance, and the root of its rise."""
+        """Where the least sum of squares is at a distance, and the root of its rise.
+
+        Beside a point that is known by a hint, ahead of the last one, or beside that.
+        """
         fit, i = self.fit, self.i
-        straight = ahead * self.side * self.slope_of_others
+        straight = point + ahead * self.side * self.slope_of_others
         found_at, found = point, math.inf
         # the line may lead to points without a result, or to another minimum, above the width: then
         # the others start where they are
-        for start in (point + straight, point.copy()):
+        for start in (straight if hint is None else hint.copy(), point.copy()):
             start[i] = fit.x[i] + self.side * trial
             at, squares = fit.problem.minimize(
                 start, self.others, 30, 1e-5, ranges=(self.low, self.high)
@@ -232,15 +255,17 @@ class _Profile:
             raise Better(found_at)
         return found_at, math.sqrt(max(found - fit.chi2, 0.0))
 
-    def end(self, at: Floats, rise: float, inside: float) -> _End:
+    def end(self, at: Floats, rise: float, inside: float, last: Floats) -> _End:
         """Kind of the end if it is at a point: set by data, a range, or open.
+
+        `inside` and `last` are the distance and the point before it, with less than the rise.
 
         The data set no end where there is no result, nor where another parameter that may have
         followed this one has come to the end of its range, or so far that it is not followed.
         """
         x, problem = self.fit.x, self.fit.problem
         if not math.isfinite(rise):
-            return _End(float(x[self.i] + self.side * inside), False)
+            return _End(float(x[self.i] + self.side * inside), False, last)
         stopped = [
             j for j in self.doubtful
             if min(at[j] - self.low[j], self.high[j] - at[j]) < BESIDE
@@ -250,4 +275,4 @@ class _Profile:
             j for j in stopped
             if min(at[j] - problem.low[j], problem.high[j] - at[j]) > 2 * BESIDE
         ]  # fmt: skip
-        return _End(self.side * math.inf if far else float(at[self.i]), not stopped)
+        return _End(self.side * math.inf if far else float(at[self.i]), not stopped, at)

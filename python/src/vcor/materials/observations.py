@@ -9,7 +9,7 @@ import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -26,6 +26,9 @@ from .data import curves, read_data, tensile
 from .names import COMPUTED
 from .reader import SAME_TEMPERATURE
 from .tables import Choice
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: By column: the unit of its last digit, and its most significant digits; of arrays none is known
 Written = Mapping[str, tuple[float, int]]
@@ -138,6 +141,7 @@ class Impacts:
         self.at = self.velocity[self._rows]
         kelvin = self.settings.get("impact.temperature")
         self.temperature = np.full(len(self.at), np.nan) if kelvin is None else kelvin[self._rows]
+        self._last: tuple[str, xr.Dataset] | None = None
         table = np.stack(list(self.settings.values()), axis=1)
         self.place = [tuple(table[row].tolist()) for row in self._rows]
 
@@ -150,13 +154,32 @@ class Impacts:
 
     def error_of_model(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Error of the solution of each datum at one row of values: as stated, or as asked for."""
+        return self._errors(case, self.quantities(case, addresses, values[None], self._stated())[0])
+
+    def solved(
+        self, case: Case, addresses: list[str], values: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Data of each row of values, shape (rows, n), errors of the first, contacts of each."""
+        names = [*self.names, *self._stated(), "contacts"]
+        found = self.quantities(case, addresses, values, names)
+        n = len(self.names)
+        data = found[:, self._rows, self._columns]
+        return data, self._errors(case, found[0, :, n:-1]), found[:, self._rows, -1]
+
+    def _stated(self) -> list[str]:
+        """Columns of the errors of what was measured.
+
+        What has no stated error of its own is as accurate, in parts of its size, as the rebound.
+        """
         known = _library.columns(0)
         stated = [f"{name}_error" for name in self.names]
-        # what has no stated error of its own is as accurate, in parts of its size, as the rebound
-        own = np.array([name in known for name in stated])
-        names = [name if name in known else "cor_sphere_error" for name in stated]
-        found = self.quantities(case, addresses, values[None], names)[0, self._rows, self._columns]
-        found *= np.where(own[self._columns], 1.0, self.scale)
+        return [name if name in known else "cor_sphere_error" for name in stated]
+
+    def _errors(self, case: Case, stated: Floats) -> Floats:
+        """Error of each datum by stated ones, shape (impacts, names): these, or as asked for."""
+        own = np.array([f"{name}_error" in self._stated() for name in self.names])
+        found = stated[self._rows, self._columns]
+        found = found * np.where(own[self._columns], 1.0, self.scale)
         errors: Floats = np.fmax(number(case, "solver.accuracy") * self.scale, found)
         return errors
 
@@ -199,11 +222,18 @@ class Impacts:
         results, _ = case._solve(places, table, names, threads)
         return results.reshape(m, n, len(names))
 
+    def _seen(self, case: Case) -> xr.Dataset:
+        """How the impacts of a case are judged, and their contact times; kept for the same case."""
+        if self._last is None or self._last[0] != case.text():
+            names = ["validity", "validity_cause", "contact_time"]
+            with warnings.catch_warnings(), unwarned(ValidityWarning):
+                warnings.simplefilter("ignore", NoResultWarning)
+                self._last = case.text(), case.points(self.settings, names, progress=False)
+        return self._last[1]
+
     def validity(self, case: Case) -> list[tuple[str, str]]:
         """Whether the model holds, and the column that decides, of each impact."""
-        with warnings.catch_warnings(), unwarned(ValidityWarning):
-            warnings.simplefilter("ignore", NoResultWarning)
-            found = case.points(self.settings, ["validity", "validity_cause"], progress=False)
+        found = self._seen(case)
         return [
             (str(one), str(cause))
             for one, cause in zip(found.validity.values, found.validity_cause.values, strict=True)
@@ -211,7 +241,7 @@ class Impacts:
 
     def windows(self, case: Case) -> Floats:
         """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
-        times = self.quantities(case, [], np.empty((1, 0)), ["contact_time"])[0, :, 0]
+        times: Floats = self._seen(case).contact_time.values
         kelvin = self.settings.get("impact.temperature", np.full(len(times), np.nan))
         return np.stack([times / 100, times, kelvin], axis=1)[np.isfinite(times)]
 

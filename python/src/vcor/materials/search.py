@@ -49,8 +49,8 @@ class Corrected(Protocol):
     #: Errors of the exact data of each block of impacts
     errors: list[Floats]
 
-    def predict(self, block: Impacts, values: Floats) -> Floats:
-        """Data of a block for each row of values, shape (rows, n)."""
+    def predict(self, values: Floats) -> list[Floats]:
+        """Data of each block of impacts for each row of values, shape (rows, n)."""
 
 
 class Problem:
@@ -75,6 +75,9 @@ class Problem:
         scale = np.concatenate([block.scale for block in blocks])
         #: Size of each datum
         self.scale = np.where(scale > 0, scale, math.inf)
+        #: Which data are of impacts without their records
+        self.is_impact = np.repeat([isinstance(block, Impacts) for block in blocks],
+                                   [len(block.value) for block in blocks])  # fmt: skip
         self.noise = Noise(blocks, errors)
         values = np.array([number(case, address) for address in free])
         if not (values > 0).all():
@@ -95,8 +98,8 @@ class Problem:
         self._check_count()
         #: Relative scatter of the data, if it is estimated
         self.scatter = 1.0
-        #: Standard error of each datum
-        self.sigma = self.noise.sigma(self.scatter, self._errors_of_model(guess))
+        #: Standard error of each datum; the errors of the solution come with the search
+        self.sigma = self.noise.sigma(self.scatter, np.zeros(len(self.value)))
 
     def _check_count(self) -> None:
         """Refuse data that are too few, copies counted as one."""
@@ -150,9 +153,9 @@ class Problem:
         """Data for each row of x, shape (rows, data), on the meshes that suit the point `near`."""
         values, middle = np.exp(x), None if near is None else np.exp(near)
         self.bar.update(len(x) * sum(len(impacts.velocity) for impacts in self.impacts))
+        corrected = iter(self.corrected.predict(values) if self.corrected else ())
         return np.hstack([
-            self.corrected.predict(block, values)
-            if self.corrected and isinstance(block, Impacts)
+            next(corrected) if self.corrected and isinstance(block, Impacts)
             else block.predict(self.case, self.free, values, middle)
             for block in self.blocks
         ])  # fmt: skip
@@ -263,11 +266,7 @@ class Problem:
                                  "all data")  # fmt: skip
         begin = time.perf_counter()
         self.residuals(starts[order[0]])
-        seconds = SOLVED * len(x) ** 3 * (time.perf_counter() - begin)
-        if seconds > LONG:
-            warnings.warn(f"{self.case.name}: the fit takes some {math.ceil(seconds / 60)} min; "
-                          "fewer data, or means of repeated ones, take less",
-                          stacklevel=2)  # fmt: skip
+        self.announce(time.perf_counter() - begin)
         every = range(len(x))
         found: list[tuple[Floats, float]] = []
         for i in dict.fromkeys([0, *order]):
@@ -277,6 +276,14 @@ class Problem:
             if len(found) > 1 and found[1][1] < (1 + 1e-6) * found[0][1]:
                 break
         return self.settle(self.in_order(found[0][0]))
+
+    def announce(self, each: float) -> None:
+        """Say how long the fit takes, if that is long, by the time of all data once [s]."""
+        seconds = SOLVED * len(self.free) ** 3 * each
+        if seconds > LONG:
+            warnings.warn(f"{self.case.name}: the fit takes some {math.ceil(seconds / 60)} min; "
+                          "fewer data, or means of repeated ones, take less",
+                          stacklevel=3)  # fmt: skip
 
     def settle(self, x: Floats) -> tuple[Floats, float]:
         """The smallest sum of squares near x, with errors of the data that belong to it."""
