@@ -266,7 +266,8 @@ class Problem:
                                  "all data")  # fmt: skip
         begin = time.perf_counter()
         self.residuals(starts[order[0]])
-        self.announce(time.perf_counter() - begin)
+        if not self.corrected:
+            self.announce(SOLVED * len(x) ** 3 * (time.perf_counter() - begin))
         every = range(len(x))
         found: list[tuple[Floats, float]] = []
         for i in dict.fromkeys([0, *order]):
@@ -277,9 +278,8 @@ class Problem:
                 break
         return self.settle(self.in_order(found[0][0]))
 
-    def announce(self, each: float) -> None:
-        """Say how long the fit takes, if that is long, by the time of all data once [s]."""
-        seconds = SOLVED * len(self.free) ** 3 * each
+    def announce(self, seconds: float) -> None:
+        """Say how long the fit takes, if that is long."""
         if seconds > LONG:
             warnings.warn(f"{self.case.name}: the fit takes some {math.ceil(seconds / 60)} min; "
                           "fewer data, or means of repeated ones, take less",
