@@ -63,6 +63,7 @@ def test_a_sweep_over_the_structure():
     assert set(np.unique(found.contacts)) == {1}
 
 
+@pytest.mark.usefixtures("few_starts")
 def test_identification_of_an_anvil():
     """Stiffness and damping of an anvil from the rebound of balls of two sizes."""
     case = on({"body": "block", "mass": 0.02, "stiffness": 2e7, "damping": 40.0})
