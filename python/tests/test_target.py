@@ -63,10 +63,11 @@ def test_a_sweep_over_the_structure():
     assert set(np.unique(found.contacts)) == {1}
 
 
+@pytest.mark.usefixtures("few_starts")
 def test_identification_of_an_anvil():
     """Stiffness and damping of an anvil from the rebound of balls of two sizes."""
     case = on({"body": "block", "mass": 0.02, "stiffness": 2e7, "damping": 40.0})
-    data = {"radius": [0.003, 0.006, 0.012], "velocity": [0.5, 0.5, 0.5]}
+    data = {"radius": [0.003, 0.012], "velocity": [0.5, 0.5]}
     rows = [_at(case, r, v) for r, v in zip(*data.values(), strict=True)]
     data["cor_sphere"] = [float(row.cor_sphere) for row in rows]
     data["contact_time"] = [float(row.contact_time) for row in rows]

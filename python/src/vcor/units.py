@@ -87,7 +87,11 @@ def plain_unit(unit: str) -> str:
 
 def size(unit: str, si: str) -> tuple[float, float] | None:
     """A unit of a quantity as factor and offset to the SI unit, None if it is another unit."""
-    unit = plain_unit(unit)
+    return _size(plain_unit(unit), si)
+
+
+def _size(unit: str, si: str) -> tuple[float, float] | None:
+    """The same of a unit as this module spells it."""
     if unit == si:
         return 1.0, 0.0
     if unit in _OTHERS.get(si, {}):
@@ -102,7 +106,8 @@ def size(unit: str, si: str) -> tuple[float, float] | None:
 
 def quantities_of(unit: str) -> list[str]:
     """SI units of the quantities that a unit may belong to."""
-    return [si for si in {**_SCALED, **_OTHERS} if size(unit, si)]
+    plain = plain_unit(unit)
+    return [si for si in {**_SCALED, **_OTHERS} if _size(plain, si)]
 
 
 def suffix_unit(text: str) -> str:

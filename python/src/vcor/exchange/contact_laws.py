@@ -6,6 +6,7 @@ F = K s^n + C s^p s' of their overlap s. Here this law is solved, not that of vc
 
 from __future__ import annotations
 
+import bisect
 import functools
 import math
 from dataclasses import dataclass
@@ -19,8 +20,10 @@ from .._library import Floats, NumericalError
 
 #: Relative error of the solutions of a law
 ACCURACY = 1e-9
-#: Dampings among which that of a fit is sought, and how many are solved around it
-LEAST, MOST, NODES = 1e-9, 30.0, 12
+#: Logarithms of the dampings that are solved, as multiples of a step: the first and the last among
+#: which that of a fit is sought. All fits of a law share the solutions. With splines through them
+#: parameters differ by at most 2e-6 from those with a step of 0.02
+STEP, FIRST, LAST = 0.1, -207, 34
 #: Longest contact, in units of a law's own time
 LONGEST = 100.0
 
@@ -77,17 +80,19 @@ class Law:
         middle = math.exp(float(np.log(velocity).mean()))
         power = q * np.log(velocity / middle)
         wanted = (cor.max() + cor.min()) / 2
-        ends = math.log(LEAST), math.log(MOST)
-        excess = [self.bounce(math.exp(end))[0] - wanted for end in ends]
-        if excess[1] > 0:
+        tried = range(FIRST, LAST + 1)
+        # the first that is damped enough
+        start = bisect.bisect_left(
+            tried, True, key=lambda i: self.bounce(math.exp(STEP * i))[0] <= wanted
+        )
+        if start == len(tried):
             raise NumericalError(f"e = {wanted:.3g} is too small for a {self.name}")
-        start = ends[0] if excess[0] <= 0 else float(
-            brentq(lambda x: self.bounce(math.exp(x))[0] - wanted, *ends, xtol=0.05))  # fmt: skip
         room = 0.5 + np.ptp(power)
-        nodes = np.linspace(start + power.min() - room, start + power.max() + room, NODES)
-        found = np.array([self.bounce(math.exp(x)) for x in nodes])
+        around = STEP * tried[start] + np.array([power.min() - room, power.max() + room])
+        first, last = math.floor(around[0] / STEP), math.ceil(around[1] / STEP)
+        found = np.array([self.bounce(math.exp(STEP * i)) for i in range(first, last + 1)])
         kept = found[:, 0] > 0
-        nodes, found = nodes[kept], found[kept]
+        nodes, found = STEP * np.arange(first, last + 1)[kept], found[kept]
         # -ln(e)/b and ln(t) are smooth, and level for small dampings
         loss = CubicSpline(nodes, -np.log(found[:, 0]) / np.exp(nodes))
         duration = CubicSpline(nodes, np.log(found[:, 1]))

@@ -111,12 +111,16 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
     run as `set`: specimens, sweeps up and down, readings at one frequency. `attrs["temperature"]`
     is the mean temperature [K], nan where the file has none, `attrs["runs"]` the number of runs.
     """
-    across = "frequency" if data.attrs["kind"] == "dynamic" else "time"
-    if any(remark.strip().startswith("&material shift ") for remark in data.attrs["remarks"]):
+    attrs = data.attrs
+    across = "frequency" if attrs["kind"] == "dynamic" else "time"
+    if any(remark.strip().startswith("&material shift ") for remark in attrs["remarks"]):
         # a master curve is one, whose points belong to the sets that it was made of
         one = data.sort_values(across)
-        one.attrs = {**data.attrs, "temperature": math.nan, "runs": 1}
+        one.attrs = {**attrs, "temperature": math.nan, "runs": 1}
         return [one]
+    # pandas copies the attributes, with all that is in them, in each operation
+    data = data.copy(deep=False)
+    data.attrs = {}
     kelvin = data["temperature"].to_numpy() if "temperature" in data else np.full(len(data), np.nan)
     group = data["set"].to_numpy() if "set" in data else np.zeros(len(data))
     jumps = (np.diff(group) != 0) | (np.abs(np.diff(kelvin)) > SAME_TEMPERATURE)
@@ -127,22 +131,21 @@ def curves(data: pd.DataFrame) -> list[pd.DataFrame]:
     for part in np.split(np.arange(len(data)), np.flatnonzero(jumps) + 1):
         one = data.iloc[part].copy()
         run = _runs(one[across].to_numpy())
-        one.attrs = {**data.attrs, "runs": int(run[-1]) + 1}
         one["set"] = run
         if run[-1] and not _differ(one, across) < REPLICATES:
             steps = np.diff(one[across])
             rises = steps[steps != 0].size and steps[steps != 0][0] > 0
             at = int(np.argmax(run > 0))
             raise InputError(
-                f"{data.attrs['path']}:{one.index[at]}: found a {across} of "
+                f"{attrs['path']}:{one.index[at]}: found a {across} of "
                 f"{one[across].iloc[at]:.6g} after {one[across].iloc[at - 1]:.6g} (line "
                 f"{one.index[at - 1]}), expected one curve that {'rises' if rises else 'falls'}, "
                 "or a column of temperatures that separates the curves"
-                + f"; {one.attrs['word']} takes one of several" * bool(one.attrs.get("word"))
+                + f"; {attrs['word']} takes one of several" * bool(attrs.get("word"))
                 + f"; replicates differ by less than {100 * math.expm1(REPLICATES):.0f} %"
             )
         temperature = one["temperature"].mean() if "temperature" in one else math.nan
-        one.attrs["temperature"] = float(temperature)
+        one.attrs = {**attrs, "runs": int(run[-1]) + 1, "temperature": float(temperature)}
         found.append(one)
     if len(found) > 1 and all(len(one) == 1 for one in found):
         # a temperature sweep

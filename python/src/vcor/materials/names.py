@@ -158,15 +158,21 @@ def _columns() -> dict[str, Quantity]:
             if not one.labels}  # fmt: skip
 
 
+@functools.cache
+def _names() -> dict[str, Quantity]:
+    """Quantities, by what their names are without marks."""
+    return {plain(name): one for name, one in QUANTITIES.items()}
+
+
 def quantity(text: str) -> Quantity | None:
     """Quantity of a name or of a symbol, None if it is not known."""
-    found = _SYMBOLS.get(_symbol(text)) or _WORDS.get(plain(text))
+    name = plain(text)
+    found = _SYMBOLS.get(_symbol(text)) or _WORDS.get(name)
     if found or not text:
         return found
-    if (bare := _AVERAGE.sub("", plain(text))) != plain(text) and bare:
+    if (bare := _AVERAGE.sub("", name)) != name and bare:
         return quantity(bare)
-    by_name = {plain(name): one for name, one in QUANTITIES.items()}
-    if found := by_name.get(plain(text)) or _columns().get(plain(text)):
+    if found := _names().get(name) or _columns().get(name):
         return found
     # `Relaxation modulus G(t)`, `Frequency, f`: two that agree
     words = text.replace(",", " ").split()
