@@ -132,7 +132,7 @@ contains
             else
                rise = here - (beside + passing(k - 1, 2))
             end if
-            is_thick = rise > 0.0_wp
+            is_thick = rise > tiny(rise)
             if (.not. is_thick) return
             rate = 1.0_wp/course%dt
             speed = rate/real(impact%face%per_shear_speed(cmplx(rate, kind=wp)), wp)
