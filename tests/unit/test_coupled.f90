@@ -56,6 +56,7 @@ program test_coupled
    call test_gravity()
    call test_end_of_contact()
    call test_fast_end()
+   call test_blunt_end()
    call test_end_by_steps()
    call test_units()
    call test_early_force()
@@ -841,20 +842,42 @@ contains
          <= 3.0_wp*trajectory%contact_time_error, "its stated error")
    end subroutine test_fast_end
 
-   !> The edge of a blunt body is faster than the waves for many steps, and on a layer thinner than
-   !> the contact the waves come back before its end: against marches of 5120 steps, by the last
-   !> values of the compression
-   subroutine test_end_by_steps()
-      real(wp), parameter :: sharp = 1.0e-3_wp
+   !> The end of blunt bodies, whose pressure ends over a wide contact at once, against marches of
+   !> 2560 and 5120 steps with 64 hats, by the last values of the compression: on elastic and
+   !> relaxing faces, of rigid and elastic bodies
+   subroutine test_blunt_end()
+      real(wp), parameter :: sharp = 1.0e-3_wp, none(0) = 0.0_wp
       type(impact_t) :: impact
       type(trajectory_t) :: trajectory
 
       call make_impact(impact, rubber(0.4_wp), base_half_space, 0.0_wp, 5.0_wp, 0.01_wp, &
          profile_factor(5.0e3_wp, 3.0_wp), exponent=4.0_wp/3.0_wp)
       call solve(impact, trajectory)
-      call expect_end(trajectory, 8.9480e-4_wp, "a blunt body")
-      call check(trajectory%contact_time_error <= sharp*end_of(trajectory), &
-         "the end of a blunt body is sharper than a step")
+      call expect_end(trajectory, 8.9480e-4_wp, "r^3 on rubber", sharp)
+      call make_impact(impact, solid(15.0e6_wp, none, none, 1100.0_wp, 0.3_wp), base_half_space, &
+         0.0_wp, 1.0_wp, 0.004_wp, profile_factor(2.0e5_wp, 4.0_wp), exponent=1.25_wp)
+      call solve(impact, trajectory)
+      call expect_end(trajectory, 6.0078e-4_wp, "r^4 on an elastic half space", sharp)
+      call make_impact(impact, solid(1686086.2746_wp, [4202043.06645_wp, 3471469.31074_wp], &
+         [3469.77543_wp, 71942.05534_wp], 1094.6563_wp, 0.36053582_wp), base_half_space, 0.0_wp, &
+         2.261682743_wp, 1.9886118e-3_wp, profile_factor(3148.9126184_wp, 2.56908717_wp), &
+         exponent=1.0_wp + 1.0_wp/2.56908717_wp, &
+         striker=solid(183884350.84_wp, none, none, 1000.0_wp, 0.36603436_wp))
+      call solve(impact, trajectory)
+      call expect_end(trajectory, 1.18852e-3_wp, "an elastic body on one that relaxes", sharp)
+      call make_impact(impact, solid(63536218.4_wp, [51206055.2_wp], [20.0_wp], 1051.145_wp, &
+         0.38125_wp), base_sliding, 7.2308e-3_wp, 30.82_wp, 0.05376584_wp, &
+         profile_factor(75.093945_wp, 2.11195889_wp), exponent=1.0_wp + 1.0_wp/2.11195889_wp)
+      call solve(impact, trajectory)
+      call expect_end(trajectory, 4.4746e-4_wp, "a body on a layer that slides", sharp)
+   end subroutine test_blunt_end
+
+   !> On a layer thinner than the contact the waves come back before its end, which is that of the
+   !> last values of the compression: against a march of 5120 steps
+   subroutine test_end_by_steps()
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+
       call make_impact(impact, solid(160169.3332_wp, [103867.5216_wp, 231251.7555_wp], &
          [567.36578_wp, 1257.57392_wp], 982.11331_wp, 0.48813811_wp), base_bonded, &
          2.3831934e-3_wp, 2.7799989_wp, 0.01424084146_wp, sphere(7.566086495e-3_wp))
@@ -862,16 +885,20 @@ contains
       call expect_end(trajectory, 2.180e-3_wp, "a thin layer")
    end subroutine test_end_by_steps
 
-   !> Check the end of a contact
-   subroutine expect_end(trajectory, time, what)
+   !> Check the end of a contact, and its stated error
+   subroutine expect_end(trajectory, time, what, sharp)
       type(trajectory_t), intent(in) :: trajectory
       !> Its time [s]
       real(wp), intent(in) :: time
       !> Its name
       character(len=*), intent(in) :: what
+      !> Relative error that is stated at most
+      real(wp), intent(in), optional :: sharp
 
       call check(abs(end_of(trajectory) - time) <= 3.0_wp*trajectory%contact_time_error, &
          what//": the end of its contact is within three stated errors")
+      if (present(sharp)) call check(trajectory%contact_time_error <= sharp*time, &
+         what//": the end of its contact is sharp")
    end subroutine expect_end
 
    !> End of the contact

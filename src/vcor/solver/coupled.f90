@@ -69,10 +69,14 @@ module vcor_solver_coupled
       procedure :: note
    end type search_t
 
-   !> The finest mesh, and its steps: a second or two of an impact
+   !> The finest mesh, and its steps. All levels up to it take 1.1e10 to 1.4e10 operations (see
+   !> `mesh_t`) on a half space, at 0.12 ns an operation (eight meshes from 5e9 to 7e10: 0.10 to
+   !> 0.12) 1.3 to 1.7 s; of the slowest of 80 random impacts at an accuracy of 1e-7 1.4 to 2.6 s
+   !> were measured
    integer, parameter :: finest = 4, most_steps = first_steps*2**finest
-   !> Operations that an impact may take, some ten seconds: that of a plate whose contact lasts for
-   !> hundreds of time scales
+   !> Operations that an impact may take: what all levels up to the finest take with 40 hats, the
+   !> most of a layer, 3.6e10 and more. A plate whose contact lasts for hundreds of time scales
+   !> takes them for the search alone. 5 s at 0.12 ns
    real(wp), parameter :: most_work = 4.0e10_wp
    !> Ratio of the errors of two levels at the best: that of third order, which extrapolation leaves
    real(wp), parameter :: best_ratio = 8.0_wp
@@ -84,8 +88,9 @@ module vcor_solver_coupled
    !> (1/3)/0.2 = 1.7 times as many steps before it, which divide an error of second order by 3
    real(wp), parameter :: sharp = 1.0e-3_wp, early = 0.2_wp
    !> Ratios to which window and radius are rounded up, so that impacts that differ by less share
-   !> kernels, and their margin: of the contact that the search has found, by steps four times as
-   !> long
+   !> kernels, and their margin over what the search has found by 40 steps and five hats: of 119
+   !> random impacts the contact lasted 0.989 to 1.012 of that, and its radius was 0.964 to 1.028.
+   !> Where that is not enough the search begins anew (one of them)
    real(wp), parameter :: window_ratio = 2.0_wp**0.125_wp, radius_ratio = 2.0_wp**0.25_wp
    real(wp), parameter :: margin = 1.04_wp
 
@@ -244,8 +249,9 @@ contains
       type(course_t), intent(out) :: course
       type(error_t), allocatable, intent(out) :: error
 
-      ! growth of a window or row that is too short, and how much longer than expected they begin: a
-      ! march of 40 steps more or less
+      ! growth of a window or row that is too short, and how much longer than expected they begin:
+      ! of 121 random impacts 90 in 100 lasted no longer, and radii were 0.37 to 1.06 of what is
+      ! expected. A march of 40 steps more or less
       real(wp), parameter :: growth = 2.0_wp**0.5_wp, spare = 1.25_wp
       type(course_t) :: lasting
       type(mesh_t) :: mesh
@@ -306,9 +312,9 @@ contains
       self%work = self%work + mesh%operations()
       if (self%work > most_work) then
          call raise(error, error_numerical, 'the impact would take more than ' &
-            //as_text(most_work)//' operations, some ten seconds: the end of the contact depends ' &
-            //'on the length of the steps on a plate that is too light or too soft for the ' &
-            //'sphere; otherwise give a larger solver.accuracy')
+            //as_text(most_work)//' operations, some five seconds: the end of the contact ' &
+            //'depends on the length of the steps on a plate that is too light or too soft for ' &
+            //'the sphere; otherwise give a larger solver.accuracy')
          return
       end if
       call self%store%find(impact%face, mesh, i, error)
