@@ -100,9 +100,9 @@ module vcor_impact_trajectory
       !> Velocity of the sphere at that end, and relative velocity [m/s]
       real(wp) :: first_velocity = unset
       real(wp) :: first_speed = unset
-      !> Whether a contact after the first one was just missed, and what velocities next to that of
-      !> the impact change, which is part of the errors of both coefficients [-]
-      logical :: just_missed = .false.
+      !> Whether the first contact, or a second one, is just made or missed, and what velocities
+      !> next to that of the impact change, which is part of the errors of both coefficients [-]
+      logical :: grazes = .false.
       real(wp) :: change_beside = 0.0_wp
       !> Whether there is, or may be, a contact that the solver has not followed
       logical :: returns = .false.

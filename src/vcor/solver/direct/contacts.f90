@@ -116,7 +116,7 @@ contains
       end do
       if (allocated(error)) return
       if (allocated(trajectory%bounces)) call leave_out_unknown(trajectory)
-      if (trajectory%contacts == 1 .and. .not. trajectory%just_missed) return
+      if (trajectory%contacts == 1 .and. .not. trajectory%grazes) return
       once = settings
       once%bounces = 1
       do side = 1, 2
@@ -180,7 +180,6 @@ contains
             call vibration%make_none()
          end if
          of_sums = terms%error + vibration%error
-         wanted = max(settings%accuracy, of_sums)
          exact = .not. of_sums > 0.0_wp
          if (settings%bounces == 1 .or. allocated(error)) return
          if (any(terms%moduli < 0.0_wp)) then
@@ -225,10 +224,14 @@ contains
       subroutine set_errors()
 
          type(richardson_t) :: found
+         ! where a contact is just made or missed, steps must tell velocities apart next to it
+         real(wp), parameter :: apart = 0.1_wp*next_to
          type(ringing_t) :: ringing
          real(wp) :: of_modes(2)
 
          trajectory%accuracy = settings%accuracy
+         wanted = max(settings%accuracy, of_sums)
+         if (trajectory%grazes) wanted = max(min(settings%accuracy, apart), of_sums)
          if (terms%error > 0.0_wp) trajectory%kernel_terms = size(terms%rates)
          trajectory%kernel_error = terms%error
          found = richardson(value(:, 1))

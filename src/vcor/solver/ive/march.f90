@@ -183,7 +183,7 @@ contains
    end subroutine judge_separation
 
    !> Whether the sphere is so close to leaving the structure before the end of the contact that it
-   !> does at a velocity of the impact next to this one, by the rule of `misses` in
+   !> does at a velocity of the impact next to this one, by the rule of `grazes` in
    !> `vcor_solver_direct_march`. A contact that recedes does not come so far: it has grown again
    function all_but_leaves(motion, trajectory)
       !> The solution, advanced to the end of the contact
