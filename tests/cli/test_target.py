@@ -565,7 +565,7 @@ def test_contact_just_missed(vcor):
 # Structures on which a contact splits into two as the velocity changes, and two such velocities
 SPLITS = {
     "four modes": ("31213.5,0.01,0.009022\n29096.2,0.01,0.0011\n7240.9,0.01,0.004588\n26354.6,0.01,0.002131\n", 0.1220, 0.1232),
-    "two modes": ("15849.6,0.01,0.001422\n10723.9,0.01,0.0125\n", 1.435, 1.445),
+    "three modes": ("5214.06,0.01,0.01326\n14430.9,0.01,0.003406\n21463.4,0.01,0.01457\n", 1.575, 1.59),
 }
 
 
