@@ -6,8 +6,8 @@
 !> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
 !> of exponentials would continue to grow before the band. A plate of any thickness has the change
 !> of the thin plate, a half space or a layer on a base that without waves. On a structure direct
-!> needs a sum of exponentials: where none holds the modulus constant, before the band, a contact has
-!> the change that it has without the structure, one of another material. Where direct cannot
+!> needs a sum of exponentials: where none holds the modulus constant, before the band, the change is
+!> that without the structure, if this is of another material. Where direct cannot
 !> solve this, as a layer under a ball that deforms as well, method coupled solves both impacts with
 !> the mechanics of the case; it uses the modulus itself, too.
 module vcor_case_identified
@@ -49,7 +49,7 @@ module vcor_case_identified
       real(wp) :: held = 0.0_wp
       !> Whether that impact ends in separation
       logical :: solved = .false.
-      !> Whether both impacts can be computed, and that with the unchanged modulus ends in separation
+      !> Whether both impacts are computed, and that with the unchanged modulus ends in separation
       logical :: compared = .false.
       !> Difference of both cor [-]; a huge number if one has no result
       real(wp) :: change = huge(1.0_wp)

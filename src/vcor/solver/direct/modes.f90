@@ -119,7 +119,7 @@ contains
    end subroutine make_room
 
    !> Set the step of a part, y' = B y + b F. The change D = A - 1 and the responses r_j to forces
-   !> x^(j - 1)/(j - 1)!, with the time x since the start of the step, are Taylor's series for a step
+   !> x^(j - 1)/(j - 1)!, with the time x since the start of a step, are Taylor's series for a step
    !> h that is a power of two shorter, and each two steps are one of twice the length, with
    !>
    !>     r_3: (2 + D) r_3 + h r_2 + h^2/2 r_1,   r_2: (2 + D) r_2 + h r_1,   r_1: (2 + D) r_1,
