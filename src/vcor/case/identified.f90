@@ -6,10 +6,10 @@
 !> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
 !> of exponentials would continue to grow before the band. A plate of any thickness has the change
 !> of the thin plate, a half space or a layer on a base that without waves. On a structure direct
-!> needs a sum of exponentials: where none holds the modulus constant, before the band, the change is
-!> that without the structure, if this is of another material. Where direct cannot
-!> solve this, as a layer under a ball that deforms as well, method coupled solves both impacts with
-!> the mechanics of the case; it uses the modulus itself, too.
+!> needs a sum of exponentials: where none holds the modulus constant, before the band, it is the
+!> change without the structure, if this is of another material. Where direct cannot solve this, as
+!> a layer under a ball that deforms as well, method coupled solves both impacts with the mechanics
+!> of the case.
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
