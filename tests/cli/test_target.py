@@ -150,6 +150,18 @@ SETTINGS = {
 }
 
 
+def test_what_falls_is_named(vcor):
+    """A structure that nothing holds falls with the ball: the line names the keys of its body only."""
+    (vcor.folder / "modes.csv").write_text(HEAD + "0.0,0.0,1.0\n900.0,0.0,1.0\n", encoding="utf-8")
+    impact = "velocity = 1.0, gravity = 9.81"
+    line = refused(vcor, case(LIST, impact=impact))
+    assert "gravity = 9.81" in line and "'modes.csv'" in line and "stiffness" not in line
+    line = refused(vcor, case(BAR, impact=impact))
+    assert "support = 'free'" in line and "stiffness" not in line
+    line = refused(vcor, case(BLOCK, impact=impact))
+    assert "stiffness = 0.0" in line and "support" not in line
+
+
 @pytest.mark.parametrize("setting", SETTINGS)
 def test_settings_refused(vcor, setting):
     assert SETTINGS[setting] in refused(vcor, case(BLOCK), "--set", setting)
