@@ -42,6 +42,17 @@ def test_data_that_begin_early(vcor):
     assert earlier == pytest.approx(1.1e-3, rel=0.05)
 
 
+def test_struck_block(vcor):
+    """Behind a heavy block the change is that of the contact alone."""
+    words = ["--set", "butyl.valid_from=1e-6"]
+    alone = change(warning(vcor, *words, "--set", "plate.waves='none'"))
+    text = POWER_LAW.read_text(encoding="utf-8") + "\n&target body = 'block', mass = 50.0 /\n"
+    vcor.write(text)
+    line = warning(vcor, *words, "--set", "plate.waves='none'", name="case.nml")
+    assert line.count("\n") == 1 and "depends on the extrapolation of the fit" in line
+    assert change(line) == pytest.approx(alone, rel=0.05)
+
+
 def test_data_that_end_too_soon(vcor):
     line = warning(vcor, "--set", "butyl.valid_to=1e-4")
     assert "valid_to 1.0E-04 s" in line and change(line) > 1e-2

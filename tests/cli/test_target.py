@@ -150,6 +150,18 @@ SETTINGS = {
 }
 
 
+def test_what_falls_is_named(vcor):
+    """A structure that nothing holds falls with the ball: the line names the keys of its body only."""
+    (vcor.folder / "modes.csv").write_text(HEAD + "0.0,0.0,1.0\n900.0,0.0,1.0\n", encoding="utf-8")
+    impact = "velocity = 1.0, gravity = 9.81"
+    line = refused(vcor, case(LIST, impact=impact))
+    assert "gravity = 9.81" in line and "'modes.csv'" in line and "stiffness" not in line
+    line = refused(vcor, case(BAR, impact=impact))
+    assert "support = 'free'" in line and "stiffness" not in line
+    line = refused(vcor, case(BLOCK, impact=impact))
+    assert "stiffness = 0.0" in line and "support" not in line
+
+
 @pytest.mark.parametrize("setting", SETTINGS)
 def test_settings_refused(vcor, setting):
     assert SETTINGS[setting] in refused(vcor, case(BLOCK), "--set", setting)
@@ -379,6 +391,25 @@ def test_relaxing_plate_without_edges(vcor, name, law):
     assert (finite[4] != finite[4]) == ("dashpot" not in name)
 
 
+def test_table_on_a_block(vcor):
+    """Data that begin within the contact are off where a sum of exponentials goes on beyond them: a block that does not move gives the value without it, within the stated errors."""
+    points = [(1e-4 * 10 ** (k / 50), 1.5e6 + 1.24e4 * (1e-4 * 10 ** (k / 50)) ** -0.45) for k in range(101)]
+    (vcor.folder / "soft.csv").write_text(
+        "time [s],modulus [Pa]\n" + "".join(f"{time:.9e},{modulus:.9e}\n" for time, modulus in points), encoding="utf-8"
+    )
+    material = "&material name = 'soft', model = 'table', file = 'soft.csv', poisson_ratio = 0.49, density = 950 /\n"
+    names = ["cor_sphere", "cor_sphere_error"]
+    words = ["--set", "solver.method=direct", "--set", "solver.accuracy=1e-3"]
+    text = case("body = 'block', mass = 1e5", more=material, face="soft")
+    found, stated = numbers(vcor, text, names, *words)
+    expected, error = numbers(vcor, text.replace("&target body = 'block', mass = 1e5 /", "").replace("'soft' /", "'soft', waves = 'none' /", 1), names, *words)
+    assert abs(found - expected) > 1e-2
+    assert abs(found - expected) <= 3.0 * (stated + error)
+    # less than a hundred times the accuracy asked for is missed, or it is refused
+    vcor.write(text)
+    assert vcor("run", "case.nml", "--set", "solver.method=direct").code == NUMERICAL
+
+
 def test_temperature_of_a_structure(vcor):
     """A shift moves the times of the structure's material, whatever carries it."""
     beam = "body = 'beam', support = 'free', length = 0.1, width = 0.02, thickness = 0.006, material = 'sheet'"
@@ -541,6 +572,40 @@ def test_contact_just_missed(vcor):
             high = middle
     jump = abs(counts[high][1] - counts[low][1])
     assert min(counts[high][2], counts[low][2]) >= 0.5 * jump
+
+
+# Structures on which a contact splits into two as the velocity changes, and two such velocities
+SPLITS = {
+    "four modes": ("31213.5,0.01,0.009022\n29096.2,0.01,0.0011\n7240.9,0.01,0.004588\n26354.6,0.01,0.002131\n", 0.1220, 0.1232),
+    "three modes": ("5214.06,0.01,0.01326\n14430.9,0.01,0.003406\n21463.4,0.01,0.01457\n", 1.575, 1.59),
+}
+
+
+@pytest.mark.parametrize("name", SPLITS)
+def test_contact_that_all_but_splits(vcor, name):
+    """Where a contact almost ends in its middle, and steps that are shorter find that it does, the stated error of contact_time has the difference, whatever method has found it."""
+    modes, low, high = SPLITS[name]
+    (vcor.folder / "modes.csv").write_text(HEAD + modes, encoding="utf-8")
+    names = ["contacts", "contact_time", "contact_time_error"]
+
+    def result(velocity, *words):
+        return numbers(vcor, case(LIST, impact=f"velocity = {velocity!r}"), names, *words)
+
+    first, last = result(low), result(high)
+    assert first[0] != last[0]
+    assert abs(first[1] - last[1]) > 0.1 * first[1]
+    assert max(first[2], last[2]) < 1e-5 * first[1]
+    while high - low > 4e-7 * low:
+        middle = 0.5 * (low + high)
+        if result(middle)[0] == first[0]:
+            low = middle
+        else:
+            high = middle
+    for step in (-8e-7, -4e-7, 0.0, 4e-7):
+        _, time, stated = result(low * (1.0 + step))
+        _, expected, error = result(low * (1.0 + step), "--set", "solver.method=direct", "--set", "solver.accuracy=1e-9")
+        assert abs(time - expected) <= 1.01 * stated + error + 1e-9 * time
+    assert max(result(low)[2], result(high)[2]) > 0.1 * first[1]
 
 
 def test_undamped_block_under_its_ball(vcor):

@@ -5,15 +5,18 @@
 !> E(t) = E(valid_from) before it and E(valid_to) after it, the effect of the extrapolation on the
 !> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
 !> of exponentials would continue to grow before the band. A plate of any thickness has the change
-!> of the thin plate, a half space or a layer on a base that without waves. Where direct cannot
-!> solve this, as a layer under a ball that deforms as well, method coupled solves both impacts with
-!> the mechanics of the case; it uses the modulus itself, too.
+!> of the thin plate, a half space or a layer on a base that without waves. On a structure direct
+!> needs a sum of exponentials: where none holds the modulus constant, before the band, it is the
+!> change without the structure, if this is of another material. Where direct cannot solve this, as
+!> a layer under a ball that deforms as well, method coupled solves both impacts with the mechanics
+!> of the case.
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_body, only : material_of_case
    use vcor_case_mechanics, only : has_body
    use vcor_case_problem, only : solve_case
+   use vcor_case_catalogue, only : find_group
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
@@ -44,9 +47,9 @@ module vcor_case_identified
       real(wp) :: cor = 0.0_wp
       !> cor with the modulus held constant outside of the band [-], if `solved`
       real(wp) :: held = 0.0_wp
-      !> Whether that impact has a result
+      !> Whether that impact ends in separation
       logical :: solved = .false.
-      !> Whether the impact with the unchanged modulus has one, without which there is no comparison
+      !> Whether both impacts are computed, and that with the unchanged modulus ends in separation
       logical :: compared = .false.
       !> Difference of both cor [-]; a huge number if one has no result
       real(wp) :: change = huge(1.0_wp)
@@ -104,7 +107,6 @@ contains
 
       type(case_t) :: other
       class(material_t), allocatable :: material
-      type(outcome_t) :: held, free
       type(error_t), allocatable :: error
       real(wp), allocatable :: times(:), moduli(:)
       real(wp) :: first, last
@@ -137,29 +139,55 @@ contains
       call other%set(other%address('solver', 'scheme'), 'product', given=.true.)
       call other%set(other%address('solver', 'accuracy'), 0.1_wp*reported_change)
       call other%unset(other%address('solver', 'time_step'))
-      call solve_case(other, free, error)
-      reliance%compared = .not. allocated(error)
-      if (reliance%compared) reliance%compared = free%status == contact_separated
+      call compare(other, item, is_body, times, moduli, reliance)
+      if (.not. reliance%compared .and. case%count('target') > 0 &
+          .and. case%material_of('target') /= item) then
+         call other%remove(find_group('target'), 1)
+         call other%set(other%address('plate', 'waves'), 'none', given=.true.)
+         call compare(other, item, is_body, times, moduli, reliance)
+      end if
       if (.not. reliance%compared) then
          call use_coupled(case, other)
-         call solve_case(other, free, error)
-         reliance%compared = .not. allocated(error)
-         if (reliance%compared) reliance%compared = free%status == contact_separated
+         call compare(other, item, is_body, times, moduli, reliance)
       end if
       if (.not. reliance%compared) return
-      reliance%cor = merge(free%cor_sphere, free%cor, is_body)
-      call other%set(other%address('material', 'model', item), 'table', given=.true.)
-      call take_as_is(other, item)
-      call other%set(other%address('material', 'times', item), times, given=.true.)
-      call other%set(other%address('material', 'moduli', item), moduli, given=.true.)
-      call solve_case(other, held, error)
-      reliance%solved = .not. allocated(error)
-      if (reliance%solved) reliance%solved = held%status == contact_separated
-      reliance%held = merge(held%cor_sphere, held%cor, is_body)
       if (reliance%solved) reliance%change = abs(reliance%held - reliance%cor)
       ! a contact that ends before the data begin relies on extrapolation only, whatever the change
       reliance%relies = reliance%change > reported_change &
          .or. (reliance%ends(1) .and. first > contact_time)
    end subroutine find_reliance
+
+   !> Solve an impact with a material as it is, and with its modulus held constant beyond the data
+   subroutine compare(case, item, is_body, times, moduli, reliance)
+      !> The case to be solved
+      type(case_t), intent(in) :: case
+      !> Index of the material
+      integer, intent(in) :: item
+      !> Whether cor is that of the sphere alone
+      logical, intent(in) :: is_body
+      !> Times [s] and moduli [Pa] of the data, shape (n)
+      real(wp), intent(in) :: times(:), moduli(:)
+      !> The reliance; unchanged if the impact is not solved
+      type(reliance_t), intent(inout) :: reliance
+
+      type(case_t) :: other
+      type(outcome_t) :: free, held
+      type(error_t), allocatable :: error
+
+      call solve_case(case, free, error)
+      if (allocated(error)) return
+      if (free%status /= contact_separated) return
+      reliance%cor = merge(free%cor_sphere, free%cor, is_body)
+      other = case
+      call other%set(other%address('material', 'model', item), 'table', given=.true.)
+      call take_as_is(other, item)
+      call other%set(other%address('material', 'times', item), times, given=.true.)
+      call other%set(other%address('material', 'moduli', item), moduli, given=.true.)
+      call solve_case(other, held, error)
+      reliance%compared = .not. allocated(error)
+      if (.not. reliance%compared) return
+      reliance%solved = held%status == contact_separated
+      reliance%held = merge(held%cor_sphere, held%cor, is_body)
+   end subroutine compare
 
 end module vcor_case_identified

@@ -55,8 +55,21 @@ contains
       if (allocated(error)) return
       if (impact%gravity > 0.0_wp .and. structure%falls()) call raise(error, error_input, &
          'a structure with a mode of frequency 0 falls with the sphere: expected gravity = 0, or ' &
-         //'a structure that is held', about='gravity body support stiffness')
+         //'a structure that is held', about='gravity body'//holding(inputs%target%body))
    end subroutine build_structure
+
+   !> The key of a body that says whether it is held
+   pure function holding(body) result(key)
+      !> The body
+      integer, intent(in) :: body
+      !> Its name after a blank, filled up with blanks
+      character(len=10) :: key
+
+      key = ' support'
+      if (body == target_block) key = ' stiffness'
+      if (body /= target_block .and. all(body /= [target_beam, target_plate, target_rod])) &
+         key = ' file'
+   end function holding
 
    !> Build a plate, a beam or a rod
    pure subroutine build_body(structure, inputs, material, limit, error)

@@ -100,10 +100,11 @@ module vcor_impact_trajectory
       !> Velocity of the sphere at that end, and relative velocity [m/s]
       real(wp) :: first_velocity = unset
       real(wp) :: first_speed = unset
-      !> Whether a contact after the first one was just missed, and what velocities next to that of
-      !> the impact change, which is part of the errors of both coefficients [-]
-      logical :: just_missed = .false.
+      !> Whether the first contact, or a second one, is just made or missed, and what velocities
+      !> next to that of the impact change, which is part of the errors of both coefficients [-]
+      logical :: grazes = .false.
       real(wp) :: change_beside = 0.0_wp
+      !> Whether there is, or may be, a contact that the solver has not followed
       logical :: returns = .false.
       !> Velocity of the structure's rigid motion [m/s], and energy left in its modes [J], at the
       !> last separation
@@ -141,6 +142,7 @@ module vcor_impact_trajectory
       procedure :: misses_by_far
       procedure :: sample
       procedure :: indentation_at
+      procedure :: value_at
       procedure :: radius_at
       procedure :: impulse_at
    end type trajectory_t
@@ -395,15 +397,13 @@ contains
       !> Indentation [m]
       real(wp) :: indentation
 
-      real(wp) :: c(0:self%stages), step, x
+      real(wp) :: step, x
       integer :: i
 
       indentation = unset
       if (.not. allocated(self%state)) return
-      i = 0
       if (self%stages > 0) then
-         call find_panel(self, time, i, c)
-         indentation = dot_product(self%state(col_indentation, i:i + self%stages), c)
+         indentation = self%value_at(self%state(col_indentation, 0:self%final), time)
          return
       end if
       i = max(1, count(self%state(col_time, 0:self%last - 1) < time))
@@ -415,6 +415,24 @@ contains
             - (1.0_wp - x)*step*right(col_velocity))
       end associate
    end function indentation_at
+
+   !> A value at a time of the contact by the collocation polynomials, of a solver that has them
+   pure function value_at(self, values, time) result(value)
+      class(trajectory_t), intent(in) :: self
+      !> Values at the nodes, shape (0:final)
+      real(wp), intent(in) :: values(0:)
+      !> Time since first contact [s], up to that of the last node
+      real(wp), intent(in) :: time
+      !> Value
+      real(wp) :: value
+
+      real(wp) :: c(0:self%stages)
+      integer :: i
+
+      i = 0
+      call find_panel(self, time, i, c)
+      value = dot_product(values(i:i + self%stages), c)
+   end function value_at
 
    !> Contact radius at a time of the contact, linear between the nodes, of a solver that has one
    pure function radius_at(self, time) result(radius)

@@ -131,7 +131,8 @@ contains
          if (all(outcome%status /= [contact_separated, contact_resting])) return
          if (trajectory%returns .and. .not. solver%settings%first_contact) then
             call raise(error, error_numerical, 'the structure strikes the sphere again after the ' &
-               //"first separation, which method = 'ive' does not follow: use method = 'auto'")
+               //"first separation, or may, which method = 'ive' does not follow: use method = " &
+               //"'auto'")
             return
          end if
          if (outcome%max_indentation > impact%law%deepest()) then

@@ -41,8 +41,8 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      ! share of the accuracy at which the steps are short enough: the other results err by up to
-      ! five times as much as cor_sphere
+      ! share of the accuracy, or of the error that the sums leave, at which the steps are short
+      ! enough: the other results err by up to five times as much as cor_sphere
       real(wp), parameter :: share = 0.2_wp
       type(vibration_t) :: vibration
       type(exponential_sum_t) :: terms
@@ -51,7 +51,8 @@ contains
       type(impact_t) :: other
       type(solver_settings_t) :: once
       type(bounces_t) :: bounces(3)
-      real(wp) :: dt, dearer, shortest, window, effort, value(3, 6), beside(2, 4), thousandth
+      real(wp) :: dt, dearer, shortest, window, effort, value(3, 6), beside(2, 4), thousandth, &
+         of_sums, wanted
       logical :: given, exact, short_enough
       integer :: level, side
 
@@ -115,7 +116,7 @@ contains
       end do
       if (allocated(error)) return
       if (allocated(trajectory%bounces)) call leave_out_unknown(trajectory)
-      if (trajectory%contacts == 1 .and. .not. trajectory%just_missed) return
+      if (trajectory%contacts == 1 .and. .not. trajectory%grazes) return
       once = settings
       once%bounces = 1
       do side = 1, 2
@@ -155,6 +156,7 @@ contains
 
          ! accuracy of the numerical inversion of a pair
          real(wp), parameter :: rounding = 3.0e-12_wp
+         type(exponential_sum_t) :: short
          real(wp) :: accuracy, brief
 
          accuracy = sum_share*max(settings%accuracy, epsilon(1.0_wp))
@@ -166,12 +168,19 @@ contains
                //'of this contact')
             return
          end if
+         ! data have the error that they have: what a long window adds up to says little about a
+         ! contact, which is brief in it
+         if (terms%error > accuracy) then
+            call impact%kernel_exponentials(sum_window*brief, accuracy, short)
+            terms%error = max(terms%error, short%error)
+         end if
          if (impact%target%structure%exists()) then
             call impact%target%structure%expand(window, brief, accuracy, vibration, error)
          else
             call vibration%make_none()
          end if
-         exact = .not. max(terms%error, vibration%error) > 0.0_wp
+         of_sums = terms%error + vibration%error
+         exact = .not. of_sums > 0.0_wp
          if (settings%bounces == 1 .or. allocated(error)) return
          if (any(terms%moduli < 0.0_wp)) then
             call raise(error, error_numerical, 'the kernel of this contact is a sum of ' &
@@ -189,10 +198,8 @@ contains
       subroutine set_errors_of_bounces()
 
          type(richardson_t) :: found
-         real(wp) :: of_sums
          integer :: n, known
 
-         of_sums = terms%error + vibration%error
          known = minval(bounces%count)
          associate (new => trajectory%bounces)
             do n = 1, new%count
@@ -201,9 +208,10 @@ contains
                   if (n <= known) then
                      found = richardson([bounces(1)%list(n)%cor, bounces(2)%list(n)%cor, &
                         bounce%cor])
-                     bounce%cor_error = found%error + of_sums
+                     bounce%cor_error = found%error
                   end if
-                  short_enough = short_enough .and. miss_of(bounce) <= share*settings%accuracy
+                  short_enough = short_enough .and. miss_of(bounce) <= share*wanted
+                  if (n <= known) bounce%cor_error = bounce%cor_error + of_sums
                end associate
             end do
             found = richardson(bounces%total_time)
@@ -216,25 +224,28 @@ contains
       subroutine set_errors()
 
          type(richardson_t) :: found
+         ! where a contact is just made or missed, steps must tell velocities apart next to it
+         real(wp), parameter :: apart = 0.1_wp*next_to
          type(ringing_t) :: ringing
-         real(wp) :: of_sums, of_modes(2)
+         real(wp) :: of_modes(2)
 
-         of_sums = terms%error + vibration%error
          trajectory%accuracy = settings%accuracy
+         wanted = max(settings%accuracy, of_sums)
+         if (trajectory%grazes) wanted = max(min(settings%accuracy, apart), of_sums)
          if (terms%error > 0.0_wp) trajectory%kernel_terms = size(terms%rates)
          trajectory%kernel_error = terms%error
          found = richardson(value(:, 1))
+         short_enough = found%error <= share*wanted
          trajectory%cor_error = found%error + of_sums
          found = richardson(value(:, 2))
+         short_enough = short_enough .and. found%error <= share*wanted
          trajectory%cor_sphere_error = found%error + of_sums
          found = richardson(value(:, 3))
+         short_enough = short_enough .and. is_done(3, found%error, trajectory%first_end)
          trajectory%contact_time_error = found%error + of_sums*trajectory%first_end
          found = richardson(value(:, 4))
+         short_enough = short_enough .and. is_done(4, found%error, trajectory%max_force)
          trajectory%max_force_error = found%error + of_sums*trajectory%max_force
-         short_enough = max(trajectory%cor_error, trajectory%cor_sphere_error) &
-            <= share*settings%accuracy &
-            .and. is_done(3, trajectory%contact_time_error, trajectory%first_end) &
-            .and. is_done(4, trajectory%max_force_error, trajectory%max_force)
          call ringing%begin(impact, vibration, impact%time_scale(), 0.0_wp)
          of_modes = ringing%velocity_errors(impact, abs(last(trajectory, col_velocity)), &
             last(trajectory, col_indentation))
@@ -247,11 +258,11 @@ contains
       pure function is_done(i, uncertainty, size)
          !> Result
          integer, intent(in) :: i
-         !> Its error, and its size
+         !> Its error by the steps, and its size
          real(wp), intent(in) :: uncertainty, size
          logical :: is_done
 
-         is_done = uncertainty <= settings%accuracy*size &
+         is_done = uncertainty <= wanted*size &
             .or. all(nint(value(:, 6)) == nint(value(3, 6))) &
             .and. abs(value(3, i) - value(2, i)) >= abs(value(2, i) - value(1, i))
       end function is_done

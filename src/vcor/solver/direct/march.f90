@@ -127,8 +127,8 @@ contains
             flown = 0
          end if
          if (mod(run%steps, stride) == 0) call store(run%node(impact), trajectory, stride)
-         if (trajectory%contacts <= 1) trajectory%just_missed = trajectory%just_missed &
-            .or. misses(run, impact)
+         if (trajectory%contacts <= 1) trajectory%grazes = trajectory%grazes &
+            .or. grazes(run, impact)
          if (.not. run%force(1) > 0.0_wp .and. trajectory%contacts > 0) then
             if (mod(flown, reach_steps) == 0) reach = vibration%reach(run%modes%state())
             flown = flown + 1
@@ -329,27 +329,28 @@ contains
       end if
    end function has_left
 
-   !> Whether a sphere without contact is closest to the structure, or one in contact closest to
-   !> leaving it, and so close that it does at a velocity of the impact next to this one:
-   !> displacements grow as the velocity, or a little faster
-   pure function misses(run, impact)
+   !> Whether the sphere turns towards the structure or away from it so close to its surface, on
+   !> either side, that at a velocity of the impact next to this one it does on the other: there
+   !> contacts merge or split, are made or missed. Displacements grow as the velocity, or a little
+   !> faster
+   pure function grazes(run, impact)
       type(run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
-      logical :: misses
+      logical :: grazes
 
-      real(wp) :: depth(3), bend, closest, sphere
+      real(wp) :: turn, sphere
 
-      misses = .false.
-      depth = run%depth
-      ! in contact it is the least depth
-      if (minval(depth) > 0.0_wp) depth = -depth
-      if (.not. maxval(depth) < 0.0_wp) return
-      if (.not. (depth(2) >= depth(1) .and. depth(2) > depth(3))) return
-      bend = depth(1) - 2.0_wp*depth(2) + depth(3)
-      closest = depth(2) - 0.125_wp*(depth(1) - depth(3))**2/bend
+      grazes = .false.
+      associate (depth => run%depth)
+         if (.not. (min(depth(1), depth(3)) > depth(2) .or. max(depth(1), depth(3)) < depth(2))) &
+            return
+         turn = depth(2) - 0.125_wp*(depth(1) - depth(3))**2/(depth(1) - 2.0_wp*depth(2) + depth(3))
+         ! by the force of a dashpot the surface is never far away in contact
+         if (minval(depth) > 0.0_wp .and. impact%kernel_viscosity() > 0.0_wp) return
+      end associate
       sphere = run%sphere(impact)
-      misses = -closest < 2.0_wp*next_to*(abs(sphere) + abs(sphere - run%s))
-   end function misses
+      grazes = abs(turn) < 2.0_wp*next_to*(abs(sphere) + abs(sphere - run%s))
+   end function grazes
 
    !> Whether the weight keeps the sphere in contact, at rest
    pure function is_at_rest(run, impact) result(rests)
@@ -472,7 +473,7 @@ contains
       flown = 0
       do
          call run%take_step(impact)
-         back = run%force(1) > 0.0_wp .or. run%effort > direct_most_work .or. misses(run, impact)
+         back = run%force(1) > 0.0_wp .or. run%effort > direct_most_work .or. grazes(run, impact)
          if (back) return
          if (mod(flown, reach_steps) == 0) reach = vibration%reach(run%modes%state())
          flown = flown + 1

@@ -5,7 +5,7 @@
 !>
 !>     y_n = A y_{n-1} + B_0 F_{n-1} + B_1 F_n + B_2 (F_n - 2 F_{n-1} + F_{n-2})
 !>
-!> with the exponential of the matrix of the differential equations of state and force. Its part
+!> from the matrix of the differential equations of the state. The part
 !> A - 1 is computed and added: the rounding of A itself would be the same in every step, and add up
 !> to the number of steps. What F_n adds at its own node is left out of the stored state, and added
 !> with the next step, so that a step passes through the modes once. A mode that the steps do not
@@ -69,7 +69,7 @@ contains
 
       ! largest frequency times step: a third of that of a force which alternates from node to node
       real(wp), parameter :: fastest = 1.0_wp
-      real(wp) :: matrix(5, 5), unit
+      real(wp) :: matrix(2, 2), unit
       integer :: n, modes
 
       modes = vibration%modes()
@@ -87,10 +87,8 @@ contains
             end if
             ! deflections in a unit that makes the matrix as small as it can be
             unit = max(sqrt(square), 1.0_wp/dt)
-            matrix = 0.0_wp
-            matrix(1, 2:3) = [unit, unit*kick]
-            matrix(2, 1:3) = [-square/unit, -damping, yield]
-            call self%oscillators%set_step(n, dt, matrix)
+            matrix = reshape([0.0_wp, -square/unit, unit, -damping], [2, 2])
+            call self%oscillators%set_step(n, dt, matrix, [unit*kick, yield])
             self%oscillators%a(n, 1, 2) = self%oscillators%a(n, 1, 2)/unit
             self%oscillators%a(n, 2, 1) = self%oscillators%a(n, 2, 1)*unit
             self%oscillators%start(n, 1) = self%oscillators%start(n, 1)/unit
@@ -99,9 +97,8 @@ contains
          end associate
       end do
       do n = 1, size(vibration%rate)
-         matrix(:4, :4) = 0.0_wp
-         matrix(1, :2) = [-vibration%rate(n), vibration%weight(n)]
-         call self%exponentials%set_step(n, dt, matrix(:4, :4))
+         call self%exponentials%set_step(n, dt, reshape([-vibration%rate(n)], [1, 1]), &
+            [vibration%weight(n)])
       end do
       call self%oscillators%join()
       call self%exponentials%join()
@@ -121,59 +118,59 @@ contains
       allocate (self%a(number, components, components), source=0.0_wp)
    end subroutine make_room
 
-   !> Set the step of a part from the matrix of its differential equations
-   subroutine set_step(self, n, dt, matrix)
+   !> Set the step of a part, y' = B y + b F. The change D = A - 1 and the responses r_j to forces
+   !> x^(j - 1)/(j - 1)!, with the time x since the start of a step, are Taylor's series for a step
+   !> h that is a power of two shorter, and each two steps are one of twice the length, with
+   !>
+   !>     r_3: (2 + D) r_3 + h r_2 + h^2/2 r_1,   r_2: (2 + D) r_2 + h r_1,   r_1: (2 + D) r_1,
+   !>     D: (2 + D) D
+   subroutine set_step(self, n, dt, matrix, push)
       class(parts_t), intent(inout) :: self
       !> Number of the part
       integer, intent(in) :: n
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Matrix of the state [1/s], of the force in the next column, and room for two columns and
-      !> three rows; destroyed
-      real(wp), intent(inout) :: matrix(:, :)
+      !> B [1/s], shape (components, components), and b, shape (components)
+      real(wp), intent(in) :: matrix(:, :), push(:)
 
-      ! responses to a force that falls from 1 to 0, that rises to 1, and (x^2 - x)/2
-      real(wp), parameter :: force(3, 3) = reshape([1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
-         0.0_wp, 0.0_wp, -0.5_wp, 1.0_wp], [3, 3])
-      real(wp) :: answer(size(self%y, 2), 3)
-      integer :: k
-
-      k = size(self%y, 2)
-      matrix = dt*matrix
-      matrix(k + 1, k + 2) = 1.0_wp
-      matrix(k + 2, k + 3) = 1.0_wp
-      call exponentiate(matrix)
-      answer = matmul(matrix(:k, k + 1:), force)
-      self%a(n, :, :) = matrix(:k, :k)
-      self%start(n, :) = answer(:, 1) - 2.0_wp*answer(:, 3)
-      self%before(n, :) = answer(:, 3)
-      self%end(n, :) = answer(:, 2) + answer(:, 3)
-   end subroutine set_step
-
-   !> Replace a matrix M by exp(M) - 1: Taylor's series of the matrix over a power of two, squared
-   !> as (1 + E)^2 - 1 = 2 E + E^2
-   pure subroutine exponentiate(matrix)
-      real(wp), intent(inout) :: matrix(:, :)
-
-      ! 0.5^15/15! is below rounding
+      ! largest B h; 0.5^15/15! is below rounding
       real(wp), parameter :: small = 0.5_wp
       integer, parameter :: terms = 14
-      real(wp), dimension(size(matrix, 1), size(matrix, 1)) :: part, total
-      integer :: squarings, i
+      real(wp), dimension(size(push), size(push)) :: b, change
+      real(wp), dimension(size(push)) :: given, once, twice, thrice
+      real(wp) :: h
+      integer :: doublings, i
 
-      squarings = max(0, exponent(maxval(sum(abs(matrix), 1))/small))
-      matrix = matrix*0.5_wp**squarings
-      part = matrix
-      total = part
-      do i = 2, terms
-         part = matmul(part, matrix)/real(i, wp)
-         total = total + part
+      doublings = max(0, exponent(dt*maxval(sum(abs(matrix), 1))/small))
+      ! in units of the time step
+      h = 0.5_wp**doublings
+      b = (h*dt)*matrix
+      given = (h*dt)*push
+      change = 0.0_wp
+      thrice = 0.0_wp
+      do i = terms, 1, -1
+         change = (b + matmul(b, change))/real(i, wp)
+         thrice = (given + matmul(b, thrice))/real(i + 3, wp)
       end do
-      do i = 1, squarings
-         total = 2.0_wp*total + matmul(total, total)
+      thrice = (given + matmul(b, thrice))/6.0_wp
+      twice = 0.5_wp*given + matmul(b, thrice)
+      once = given + matmul(b, twice)
+      twice = h*twice
+      thrice = h**2*thrice
+      do i = 1, doublings
+         thrice = 2.0_wp*thrice + matmul(change, thrice) + h*(twice + 0.5_wp*h*once)
+         twice = 2.0_wp*twice + matmul(change, twice) + h*once
+         once = 2.0_wp*once + matmul(change, once)
+         change = 2.0_wp*change + matmul(change, change)
+         h = 2.0_wp*h
       end do
-      matrix = total
-   end subroutine exponentiate
+      self%a(n, :, :) = change
+      ! a parabola through the node before, the start and the end of the step adds (x^2 - x)/2 times
+      ! its second difference to a line
+      self%before(n, :) = thrice - 0.5_wp*twice
+      self%start(n, :) = once - twice - 2.0_wp*self%before(n, :)
+      self%end(n, :) = twice + self%before(n, :)
+   end subroutine set_step
 
    !> Join what a force adds at its node to its response in the next step
    pure subroutine join(self)
@@ -224,58 +221,46 @@ contains
       associate (y => self%y, a => self%a, start => self%start, more => self%before)
          if (size(y, 2) == 1) then
             y(:, 1) = y(:, 1) + (a(:, 1, 1)*y(:, 1) + start(:, 1)*force + more(:, 1)*before)
-         else if (max(force, before) > 0.0_wp) then
-            call push(size(y, 1), start(:, 1), start(:, 2), more(:, 1), more(:, 2), force, before, &
-               a(:, 1, 1), a(:, 1, 2), a(:, 2, 1), a(:, 2, 2), y(:, 1), y(:, 2))
          else
-            call swing(size(y, 1), a(:, 1, 1), a(:, 1, 2), a(:, 2, 1), a(:, 2, 2), y(:, 1), y(:, 2))
+            call swing(size(y, 1), a(:, 1, 1), a(:, 1, 2), a(:, 2, 1), a(:, 2, 2), &
+               start(:, 1), start(:, 2), more(:, 1), more(:, 2), force, before, y(:, 1), y(:, 2))
          end if
       end associate
    end subroutine step
 
-   !> Advance oscillators under a force: arguments apart, for loops over several at once
-   pure subroutine push(n, start_1, start_2, more_1, more_2, force, before, &
-                        a_11, a_12, a_21, a_22, y_1, y_2)
+   !> Advance oscillators: arguments apart, for loops over several at once
+   pure subroutine swing(n, a_11, a_12, a_21, a_22, start_1, start_2, more_1, more_2, force, &
+                         before, y_1, y_2)
       !> Number
       integer, intent(in) :: n
+      !> Step from state to change of the state
+      real(wp), intent(in) :: a_11(n), a_12(n), a_21(n), a_22(n)
       !> Responses of both components to the force at the start and at the node before
       real(wp), intent(in) :: start_1(n), start_2(n), more_1(n), more_2(n)
       !> Force at both [N]
       real(wp), intent(in) :: force, before
-      !> Step from state to change of the state
-      real(wp), intent(in) :: a_11(n), a_12(n), a_21(n), a_22(n)
       !> State
       real(wp), intent(inout) :: y_1(n), y_2(n)
 
       real(wp) :: one, other
       integer :: i
 
-      do i = 1, n
-         one = a_11(i)*y_1(i) + a_12(i)*y_2(i) + start_1(i)*force + more_1(i)*before
-         other = a_21(i)*y_1(i) + a_22(i)*y_2(i) + start_2(i)*force + more_2(i)*before
-         y_1(i) = y_1(i) + one
-         y_2(i) = y_2(i) + other
-      end do
-   end subroutine push
-
-   !> Advance oscillators without a force
-   pure subroutine swing(n, a_11, a_12, a_21, a_22, y_1, y_2)
-      !> Number
-      integer, intent(in) :: n
-      !> Step from state to change of the state
-      real(wp), intent(in) :: a_11(n), a_12(n), a_21(n), a_22(n)
-      !> State
-      real(wp), intent(inout) :: y_1(n), y_2(n)
-
-      real(wp) :: one, other
-      integer :: i
-
-      do i = 1, n
-         one = a_11(i)*y_1(i) + a_12(i)*y_2(i)
-         other = a_21(i)*y_1(i) + a_22(i)*y_2(i)
-         y_1(i) = y_1(i) + one
-         y_2(i) = y_2(i) + other
-      end do
+      if (max(force, before) > 0.0_wp) then
+         do i = 1, n
+            one = a_11(i)*y_1(i) + a_12(i)*y_2(i) + start_1(i)*force + more_1(i)*before
+            other = a_21(i)*y_1(i) + a_22(i)*y_2(i) + start_2(i)*force + more_2(i)*before
+            y_1(i) = y_1(i) + one
+            y_2(i) = y_2(i) + other
+         end do
+      else
+         ! the responses need not be read in flight
+         do i = 1, n
+            one = a_11(i)*y_1(i) + a_12(i)*y_2(i)
+            other = a_21(i)*y_1(i) + a_22(i)*y_2(i)
+            y_1(i) = y_1(i) + one
+            y_2(i) = y_2(i) + other
+         end do
+      end if
    end subroutine swing
 
    !> Complete the state with the force at the new node
