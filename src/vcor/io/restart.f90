@@ -435,8 +435,8 @@ contains
       length = index_width + (1 + number_width)*(numbers + 1) + 1
    end function line_length
 
-   !> Check sum of a point: rotating and exclusive-or are undone by their inverses, so that any change
-   !> of a single number changes the sum
+   !> Check sum of a point: rotating and exclusive-or are undone by their inverses, so that any
+   !> change of a single number changes the sum
    pure function check_of(place, words) result(check)
       !> Number of the point
       integer, intent(in) :: place
