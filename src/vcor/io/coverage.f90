@@ -195,7 +195,7 @@ contains
          fitted = ', where the modulus is that of exponentials fitted to the data'
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
-      character(len=:), allocatable :: before, after, waves, method, first_modulus
+      character(len=:), allocatable :: before, after, waves, method, early
       real(wp), allocatable :: times(:)
       integer :: unseen
 
@@ -210,17 +210,17 @@ contains
       ! a response by frequencies needs the modulus as a sum of exponentials, which goes on rising
       call case%get('plate', 'waves', waves)
       call case%get('solver', 'method', method)
-      first_modulus = constant
-      if (waves == 'body' .or. method == 'coupled') first_modulus = fitted
+      early = constant
+      if (waves == 'body' .or. method == 'coupled') early = fitted
       associate (first => times(1), last => times(size(times)), shortest => minval(contacts), &
                  longest => maxval(contacts), some => size(contacts) > 1)
          unseen = count(contacts <= first)
          if (first > seen_from*shortest) before = 'begin at '//short(first)//' s: ' &
             //percent(min(1.0_wp, first/shortest), 'all')//' of the ' &
-            //trim(merge('shortest contact', 'contact         ', some))//' lies before'//first_modulus
+            //trim(merge('shortest contact', 'contact         ', some))//' lies before'//early
          if (some .and. unseen > 0) before = 'begin at '//short(first)//' s: ' &
             //integer_text(unseen)//' of '//integer_text(size(contacts)) &
-            //' contacts lie entirely before'//first_modulus
+            //' contacts lie entirely before'//early
          if (last < longest) after = 'end at '//short(last)//' s: ' &
             //percent(1.0_wp - last/longest)//' of the ' &
             //trim(merge('longest contact', 'contact        ', some))//' lies after'//constant
