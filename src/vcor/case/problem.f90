@@ -354,9 +354,9 @@ contains
          plate = self%plate%glassy()*self%plate%plane_strain_factor()
          layer%share = sphere/(sphere + plate)
       else
-         call raise(error, error_input, 'of a layer that relaxes and a ball that deforms too, ' &
-            //"expected model = 'rigid' of the ball, if it is by far the stiffer one, or one " &
-            //"material of both, or waves = 'body'", about='base material')
+         call raise(error, error_input, 'of a ball and a layer that both deform, one of which ' &
+            //"relaxes, expected model = 'rigid' of the ball, if it is by far the stiffer one, " &
+            //"or one material of both, or waves = 'body'", about='base material')
       end if
    end subroutine describe_layer
 
