@@ -444,7 +444,7 @@ contains
             if (entry%given) message = "key '"//key//"' does not belong to "//trim(group%selector) &
                //" '"//model &
                //"', its keys are: "//join_words(keys_of(address%group, model))
-         else if (is_there(key) .and. is_there(other) .and. .not. is_ousted()) then
+         else if (is_there(key) .and. is_there(other) .and. .not. is_replaced()) then
             call self%refuse(group%name, other, address%item, 'found both '//key//' and '//other &
                //', expected one of them', error)
          else if (entry%present) then
@@ -476,7 +476,7 @@ contains
       end function is_there
 
       !> Whether one of the two keys is swept, and the other one comes from the case file
-      pure function is_ousted() result(yes)
+      pure function is_replaced() result(yes)
          logical :: yes
 
          type(address_t) :: place
@@ -487,7 +487,7 @@ contains
          if (any(swept == address)) fixed = self%entry(place)
          yes = (any(swept == address) .neqv. any(swept == place)) &
             .and. .not. allocated(fixed%origin)
-      end function is_ousted
+      end function is_replaced
    end subroutine check_entry
 
    !> Notes about implausible numbers of a case

@@ -415,8 +415,8 @@ contains
       !> Whether it is such a pair and the sum is short enough
       logical, intent(out) :: is_found
 
-      ! accuracy of the expansion over that requested, since digits cost little; lower bound by
-      ! rounding
+      ! accuracy of the expansion over that requested, since digits cost little FINER; lower bound
+      ! by rounding
       real(wp), parameter :: finer = 1.0e-2_wp, finest = 1.0e-13_wp
       type(exponential_sum_t) :: other
       real(wp) :: elastic

@@ -13,7 +13,8 @@ module vcor_impact_memory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
    use vcor_kinds, only : pi, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_spectrum, only : sum_of_resolved_spectrum, transform_t
+   use vcor_material_spectrum, only : constant_rate, farthest_rate, &
+      sum_of_resolved_spectrum, transform_t
    use vcor_material_type, only : material_t
    use vcor_numeric_elliptic, only : branch_rule
    use vcor_tuning, only : spectrum_most
@@ -132,8 +133,6 @@ contains
 
       ! accuracy of the numerical inversion
       real(wp), parameter :: rounding = 3.0e-12_wp
-      ! rate that stands for zero, over that of the window
-      real(wp), parameter :: slowest = 1.0e-14_wp
       type(exponential_sum_t) :: next
       integer :: refinement
 
@@ -156,7 +155,7 @@ contains
       ! slow rate
       if (.not. terms%equilibrium > 0.0_wp) return
       terms%moduli = [terms%moduli, terms%equilibrium]
-      terms%rates = [terms%rates, slowest/window]
+      terms%rates = [terms%rates, constant_rate/window]
       terms%equilibrium = 0.0_wp
    end subroutine exponentials
 
@@ -193,9 +192,8 @@ contains
 
       ! in a long window exp(-l t) grows for l < 0; this bounds the strip like a branch point
       real(wp), parameter :: growth = 2.0_wp
-      ! start of the substitution, over the slower of window and gap; |y| beyond which rates cannot
-      ! be computed; 1/(rate times window) of a term that acts as a dashpot
-      real(wp), parameter :: slow = 0.1_wp, farthest = 600.0_wp, constant = 1.0e-14_wp
+      ! start of the substitution, over the slower of window and gap
+      real(wp), parameter :: slow = 0.1_wp
       ! terms collected at a time, more than any gap has
       integer, parameter :: room = 256
       real(wp), allocatable :: from_zero(:), to_pole(:), share(:)
@@ -240,13 +238,13 @@ contains
       h = -pi**2/log(accuracy)
       low = log(slow*min(1.0_wp/window, before))
       high = log(max(1.0_wp/window, zero)) - log(accuracy)/3.0_wp
-      do k = ceiling((low - log(farthest))/h), floor((high + log(farthest))/h)
+      do k = ceiling((low - log(farthest_rate))/h), floor((high + log(farthest_rate))/h)
          x = real(k, wp)*h
          y = x - exp(low - x) + exp(x - high)
-         if (abs(y) > farthest) cycle
+         if (abs(y) > farthest_rate) cycle
          w = h*(1.0_wp + exp(low - x) + exp(x - high))*exp(y)*density(zeros, exp(y), 1.0_wp)
          if (.not. w > 0.0_wp) cycle
-         if ((zero + exp(y))*window > 1.0_wp/constant) then
+         if ((zero + exp(y))*window > 1.0_wp/constant_rate) then
             terms%viscosity = terms%viscosity + w/(zero + exp(y))
          else
             terms%rates = [terms%rates, zero + exp(y)]

@@ -2,6 +2,7 @@
 !> set of internal variables
 module vcor_material_exponential_sum
    use vcor_kinds, only : wp
+   use vcor_tuning, only : most_iterations
    implicit none
    private
 
@@ -225,7 +226,6 @@ contains
          !> Distance, > 0
          real(wp) :: distance
 
-         integer, parameter :: most_iterations = 200
          real(wp) :: lower, upper, others, slope, g, next, difference(size(pole)), term(size(pole))
          integer :: iteration
 

@@ -139,7 +139,8 @@ contains
       !> Error of code `error_internal`
       type(error_t), allocatable, intent(out) :: error
 
-      ! below, the integrals over an element by their series
+      ! below, the integrals over an element by their series, which err by z^6/5040 = 3e-12; the
+      ! closed form loses digits as z^-2
       real(wp), parameter :: small = 0.05_wp
       real(wp), dimension(size(node), size(node)) :: products, inverse
       real(wp) :: third, half, z, even, odd

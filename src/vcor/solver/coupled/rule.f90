@@ -11,7 +11,7 @@ module vcor_solver_coupled_rule
    implicit none
    private
 
-   public :: nodes, weights, differences, integrals
+   public :: nodes, weights, differences, integrals, wrap
 
    real(wp), parameter :: beta = 1.5_wp
    !> |z|^steps: the weights have errors of its size, and of rounding over it

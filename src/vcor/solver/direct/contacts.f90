@@ -12,7 +12,7 @@
 module vcor_solver_direct_contacts
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_bounces, only : bounce_t, bounces_t, ends_error
-   use vcor_impact_creep, only : in_order, spectrum_t
+   use vcor_impact_creep, only : in_order, ordered_rates_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_structure, only : vibration_t
    use vcor_impact_trajectory, only : col_indentation, col_sphere_velocity, col_time, &
@@ -297,7 +297,7 @@ contains
    pure subroutine sort(terms)
       type(exponential_sum_t), intent(inout) :: terms
 
-      type(spectrum_t) :: spectrum
+      type(ordered_rates_t) :: spectrum
 
       spectrum = in_order(terms)
       terms%rates = spectrum%rate(1:)

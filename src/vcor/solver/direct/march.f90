@@ -62,7 +62,7 @@ contains
       integer :: stride
 
       end_time = settings%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
+      if (.not. end_time > 0.0_wp) end_time = impact%lasting_time(impact%time_scale())
       call run%begin(impact, terms, vibration, dt)
       call trajectory%begin(run%node(impact))
       stride = 1
@@ -193,7 +193,7 @@ contains
          origin = origin + run%t
          call fly(run, here, terms, vibration, recovery, share, flown)
          origin = origin + flown
-         end_time = here%patience(here%time_scale())
+         end_time = here%lasting_time(here%time_scale())
          if (settings%end_time > 0.0_wp) end_time = settings%end_time - origin
          if (.not. end_time > 0.0_wp) then
             bounces%ending = ends_time
