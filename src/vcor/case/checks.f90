@@ -525,15 +525,15 @@ contains
                   values = pack(grid%axes(axis)%values, ieee_is_finite(grid%axes(axis)%values))
                   place = case%location('sweep', 'parameter', axis)
                end do
-               if (size(values) > 0) call judge(limits(i), case%path(address))
+               if (size(values) > 0) call note_if_beyond(limits(i), case%path(address))
             end do
          end do
       end do
 
    contains
 
-      !> Check the values of one key
-      subroutine judge(limit, name)
+      !> Note that a value of a key is beyond its limits
+      subroutine note_if_beyond(limit, name)
          type(limits_t), intent(in) :: limit
          !> Path of the key
          character(len=*), intent(in) :: name
@@ -563,7 +563,7 @@ contains
          ! a value that was set has its address as its place
          if (place /= name) note = place//': '//note
          notes = [notes, note]
-      end subroutine judge
+      end subroutine note_if_beyond
    end subroutine implausible_numbers
 
    !> Whether limits apply to a key

@@ -28,7 +28,7 @@ module vcor_impact_creep
    real(wp), parameter :: rest_damping(2) = [2.0_wp*cos(0.125_wp*pi) + 2.0_wp*cos(0.375_wp*pi), &
       2.0_wp + sqrt(2.0_wp)]
 
-   !> Error of the interpolation
+   !> Error of the interpolation: with 1e-9 two of 18 random impacts change, by 3e-13
    real(wp), parameter :: of_interpolation = 1.0e-13_wp
 
    !> The material in order of its rates: e_0, and l_k and e_k with l_0 = 0, shape (0:n)
@@ -92,8 +92,8 @@ contains
       !> Rates x [1/s] and weights r [s/kg] of the exponentials
       real(wp), allocatable, intent(out) :: rate(:), weight(:)
 
-      ! rate, over that of the oscillators, of a spring in the place of a dashpot CREEPFAST; w^2 so
-      ! large that f has the zeros of e
+      ! rate, over that of the oscillators, of a spring in the place of a dashpot, 1e6 changes none
+      ! of 18 random impacts; w^2 so large that f has the zeros of e
       real(wp), parameter :: fast = 1.0e8_wp, large = 1.0e150_wp
       type(exponential_sum_t) :: own
       type(ordered_rates_t) :: spectrum

@@ -402,7 +402,8 @@ contains
       real(wp), intent(in) :: time
       logical :: may_part_unnoticed
 
-      ! growth of alpha in a step that resolves it, and noticeable part of the distance
+      ! growth of alpha in a step that resolves it, and noticeable part of the distance: half and
+      ! twice as much of the latter make six panels more and two fewer of 1118 in 109 random impacts
       real(wp), parameter :: resolved = 2.0_wp, noticeable = 0.3_wp
 
       may_part_unnoticed = alpha > resolved*alpha_before &

@@ -261,7 +261,8 @@ contains
 
       ! a rebound with all of this energy has a coefficient of restitution of 1e-7
       real(wp), parameter :: negligible = 1.0e-14_wp
-      ! indentation divided by displacement of the sphere that counts as no indentation
+      ! indentation divided by displacement of the sphere that counts as no indentation: a hundred
+      ! times more or less changes the status of none of 109 random impacts
       real(wp), parameter :: no_indentation = 1.0e-3_wp
 
       associate (now => self%state(:, self%last), first => self%state(:, 0))

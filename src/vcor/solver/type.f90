@@ -188,6 +188,7 @@ contains
       !> plate is not light. Of fixed length, see `as_text`
       character(len=320) :: text
 
+      ! the share of elastic impacts, computed: 0.6793 for lambda = 3 to 15, 0.678 for 2.4
       real(wp), parameter :: light = 3.0_wp, share = 0.68_wp
       real(wp) :: lambda
 

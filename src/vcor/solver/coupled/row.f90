@@ -38,7 +38,8 @@ module vcor_solver_coupled_row
       procedure :: gather
    end type row_t
 
-   !> Exponent of the grading of the nodes
+   !> Exponent of the grading of the nodes: with 1.25 and 2 results of 40 random impacts change by
+   !> up to 6e-4 and 3e-3, 3 and 6 stated errors
    real(wp), parameter :: grading = 1.5_wp
 
 contains

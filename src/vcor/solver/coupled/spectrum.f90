@@ -222,7 +222,8 @@ contains
       ! with the distance of a pole over half of the length 2.6 and 5, and the length over the
       ! distance of the panel from k = 0
       real(wp), parameter :: near(2) = [0.77_wp, 0.4_wp], growth(2) = [0.7_wp, 0.5_wp]
-      ! wavenumber times thickness up to which a layer resonates
+      ! wavenumber times thickness up to which a layer resonates: half of it changes results of 40
+      ! random impacts by up to 6e-7, 3e-4 stated errors
       real(wp), parameter :: resonant = 25.0_wp
       real(wp) :: start, length, least, longer
 

@@ -34,7 +34,8 @@ module vcor_solver_direct_march
    integer, parameter :: most_contacts = 1000
    !> Most nodes that are stored; beyond it every second one is left out
    integer, parameter :: most_nodes = 16384
-   !> Steps of flight after which the reach is computed anew: the dampings make it smaller
+   !> Steps of flight after which the reach is computed anew: the dampings make it smaller. With
+   !> four times as many 18 random impacts take as long, in the same steps
    integer, parameter :: reach_steps = 64
    !> Relative distance of the velocities next to that of the impact
    real(wp), parameter :: next_to = 1.0e-6_wp

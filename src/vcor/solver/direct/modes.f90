@@ -67,7 +67,9 @@ contains
       !> Time step [s]
       real(wp), intent(in) :: dt
 
-      ! largest frequency times step: a third of that of a force which alternates from node to node
+      ! largest frequency times step: a third of that of a force which alternates from node to node.
+      ! With half of it 18 random impacts on structures take half as many steps again; with twice as
+      ! much the worst errs by 2.1 times what is stated, not 1.8
       real(wp), parameter :: fastest = 1.0_wp
       real(wp) :: matrix(2, 2), unit
       integer :: n, modes

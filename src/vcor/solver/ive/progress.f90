@@ -218,7 +218,8 @@ contains
       !> Velocity over `speed` [-]
       real(wp) :: missed
 
-      ! part of s over which the law is differentiated again
+      ! part of s over which the law is differentiated again: twice as much changes nothing that 109
+      ! random impacts state
       real(wp), parameter :: part = 0.1_wp
       real(wp) :: slower, bend, acceleration, ratio, rate, s
       integer :: k, n
@@ -359,7 +360,7 @@ contains
       real(wp), intent(out) :: time
 
       ! error of the position in the panel; its square enters the maximum, itself the pressure at
-      ! that time
+      ! that time: 1e-10 changes results of 109 random impacts by up to 1e-12, 0.01 stated errors
       real(wp), parameter :: position = 1.0e-14_wp
       real(wp) :: smooth(0:width), slopes(0:width), theta, beyond
       integer :: n, j, other

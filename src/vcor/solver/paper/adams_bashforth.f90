@@ -56,6 +56,7 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! with 3000 steps the paper's impact on SLS is off by 2e-8, with half of them by 2e-7
       integer, parameter :: usual_steps = 3000, fewest_steps = 40
       real(wp) :: dt, contact_time
 
@@ -161,6 +162,7 @@ contains
       !> The course with this step
       type(trajectory_t), intent(inout) :: trajectory
 
+      ! 2^order of a kernel t^-0.74
       real(wp), parameter :: smallest_ratio = 1.2_wp
       real(wp), dimension(4) :: found, fine, estimate, ratio
       real(wp) :: coarse(4, 2), least
@@ -228,6 +230,8 @@ contains
       !> Estimate [s]
       real(wp) :: step
 
+      ! the estimate is shown with three digits: the largest damping of the course is known as well,
+      ! and ten bisections of a factor of two are within 0.1 %
       real(wp), parameter :: accuracy = 1.0e-3_wp, noticeably_less = 0.9_wp
       integer, parameter :: halvings = 100, bisections = 10
       type(product_t) :: product
