@@ -737,7 +737,7 @@ def test_address_that_is_too_long():
 def test_a_material_of_the_name_of_a_group(sls):
     """Nothing is removed of which it is not clear whether it was meant."""
     case = vcor.Case(str(sls).replace("'steel'", "'Plate'"))
-    with pytest.raises(vcor.UsageError, match="a group and of a material, expected 'plate' in quotes"):
+    with pytest.raises(vcor.UsageError, match="of a group and of a material"):
         del case["plate"]
     assert repr(case.solve()) == repr(sls.solve())
     del case["'plate'"]

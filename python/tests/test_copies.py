@@ -264,8 +264,8 @@ def test_a_dump_of_another_build_is_refused(sls):
     head, _, fields = dump.partition(b"\n")
     short = fields[: fields.rindex(b"\n", 0, -1) + 1]
     name = fields.partition(b"\n")[0]
-    for other in (b"", b"x", short, fields + b"1:0\n", fields[:20], b"99999999999:x\n",
-                  fields.replace(name, b"-1:x"), fields.replace(b"1:0\n", b"1:y\n", 1)):  # fmt: skip
+    swapped = (fields.replace(name, b"-1:x"), fields.replace(b"1:0\n", b"1:y\n", 1))
+    for other in (b"", b"x", short, fields + b"1:0\n", fields[:20], b"99999999999:x\n", *swapped):
         made = head[: head.rindex(b" ") + 1] + b"%08X\n" % zlib.crc32(other) + other
         with pytest.raises(vcor.InputError, match="damaged"):
             make(made)

@@ -341,8 +341,8 @@ contains
          call resolve(case, name//'.name', material, message)
       if (is_group .and. material%item > 0) then
          call raise(error, error_usage, shortened(name)//': found the name of a group and of a ' &
-            //"material, expected '"//shortened(name)//"' in quotes for the material, or a key of " &
-            //'the group')
+            //"material, expected '"//shortened(name)//"' in quotes for the material, or a key " &
+            //'of the group')
       else if (is_group) then
          place%item = 1
          return
