@@ -273,24 +273,26 @@ contains
              .and. .not. shapes(find_shape(self%model(find_group('sphere'), 1)))%recedes) cycle
          if (own_rules(i)%key == 'pair' .and. why_no_pair(self) /= '') cycle
          if (own_rules(i)%method == coupled) call demand(trim(own_rules(i)%group), &
-            trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'")
+            trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'", is_read=.true.)
       end do
       do i = 1, size(unread)
          if (.not. (unread(i)%contradicts .and. any(unread(i)%by == coupled))) cycle
          keys = list_of_words(trim(unread(i)%keys))
          do j = 1, size(keys)
             call demand(trim(unread(i)%group), trim(keys(j)), &
-               default_text(find_key(trim(unread(i)%group), trim(keys(j)))))
+               default_text(find_key(trim(unread(i)%group), trim(keys(j)))), is_read=.false.)
          end do
       end do
 
    contains
 
       !> Refuse a key that is given with another value
-      subroutine demand(group, key, allowed)
+      subroutine demand(group, key, allowed, is_read)
          character(len=*), intent(in) :: group, key
          !> The value that it may have, as in a case; empty if there is none
          character(len=*), intent(in) :: allowed
+         !> Whether the key is read: otherwise --set would refuse that value, too
+         logical, intent(in) :: is_read
 
          character(len=:), allocatable :: expected, found
          type(address_t) :: address
@@ -300,8 +302,8 @@ contains
          address = self%address(group, key)
          found = value_text(catalogue(address%row), self%entry(address))
          if (found == allowed) return
-         expected = allowed
-         if (expected /= '') expected = expected//' or '
+         expected = ''
+         if (is_read) expected = allowed//' or '
          call self%refuse(group, key, 1, 'found '//key//' = '//found//' with '//cause &
             //', expected '//expected//'no such key', error)
       end subroutine demand

@@ -247,11 +247,13 @@ contains
       else
          call reading%note_unread(case%address('contact', 'pair'), why_no_pair(case))
       end if
-      ! it chooses what is not given
-      if (case%given('contact', 'law') .and. case%given('contact', 'pair') &
-          .and. case%given('plate', 'waves')) then
+      ! it chooses what is not given and has an effect
+      if ((case%given('contact', 'law') .or. .not. shapes(inputs%shape)%recedes) &
+          .and. (case%given('contact', 'pair') .or. why_no_pair(case) /= '') &
+          .and. (case%given('plate', 'waves') &
+          .or. inputs%material(of_plate)%model == 'rigid')) then
          call reading%note_unread(case%address('contact', 'mechanics'), &
-            'contact.law, contact.pair and plate.waves are all given')
+            'contact.law, contact.pair and plate.waves are given, or have no effect')
       else
          call reading%mark(case%address('contact', 'mechanics'))
       end if
