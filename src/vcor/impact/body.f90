@@ -408,7 +408,7 @@ contains
       !> Flexibility times stiffness [m2]
       real(wp) :: flexibility
 
-      ! the rest beyond the average falls as the third power of the number of terms
+      ! the rest beyond the average falls as the third power of the number of terms, to 1e-13
       integer, parameter :: terms = 20000
       real(wp) :: k, g, slope, far, near(3)
       integer :: i

@@ -294,7 +294,8 @@ contains
       logical, intent(in) :: is_last
       logical :: rests
 
-      ! square of the tolerated deviation of the forces, over the weight
+      ! square of the tolerated deviation of the forces, over the weight: 1e-7, as for velocities
+      ! above
       real(wp), parameter :: negligible = 1.0e-14_wp
       real(wp) :: weight, spring, excess
 

@@ -108,7 +108,7 @@ contains
       !> The transformation
       type(landen_t), intent(out) :: landen
 
-      ! the next modulus is below rounding
+      ! the next modulus, a quarter of the square, is below rounding
       real(wp), parameter :: small = 1.0e-8_wp
       real(wp) :: a, b, c, next
 

@@ -250,7 +250,8 @@ contains
 
       ! growth of a window or row that is too short, and how much longer than expected they begin:
       ! of 121 random impacts 90 in 100 lasted no longer, and radii were 0.37 to 1.06 of what is
-      ! expected. A march of 40 steps more or less
+      ! expected. A march of 40 steps more or less. With 1 and 1.6 two of 40 random impacts change,
+      ! by up to 0.4 stated errors
       real(wp), parameter :: growth = 2.0_wp**0.5_wp, spare = 1.25_wp
       type(course_t) :: lasting
       type(mesh_t) :: mesh

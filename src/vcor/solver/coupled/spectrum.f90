@@ -193,6 +193,7 @@ contains
       !> The variables [1/m], none without waves
       complex(wp), allocatable :: p(:)
 
+      ! a quarter of the window; the transform takes steps in multiples of four
       integer, parameter :: part = 4, turn = 4
       real(wp) :: rate
       integer :: lags
