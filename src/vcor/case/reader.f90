@@ -250,7 +250,7 @@ contains
       ! it chooses what is not given and has an effect
       if ((case%given('contact', 'law') .or. .not. shapes(inputs%shape)%recedes) &
           .and. (case%given('contact', 'pair') .or. why_no_pair(case) /= '') &
-          .and. (case%given('plate', 'waves') &
+          .and. (case%given('plate', 'waves') .or. case%count('target') > 0 &
           .or. inputs%material(of_plate)%model == 'rigid')) then
          call reading%note_unread(case%address('contact', 'mechanics'), &
             'contact.law, contact.pair and plate.waves are given, or have no effect')

@@ -186,7 +186,8 @@ contains
          if (any(terms%moduli < 0.0_wp)) then
             call raise(error, error_numerical, 'the kernel of this contact is a sum of ' &
                //'exponentials of either sign, whose dent is not followed through a flight: ' &
-               //"expected impact.bounces = 1, or another contact.pair")
+               //"expected impact.bounces = 1, or contact.pair = 'series' of materials that are " &
+               //'sums of exponentials')
             return
          end if
          call sort(terms)
