@@ -14,6 +14,14 @@ PENDULUM = ROOT / "examples" / "identification" / "pendulum.nml"
 EXAMPLES = sorted(set((ROOT / "examples").glob("**/*.nml")) - {*SWEEPS, *MATERIALS, PENDULUM})
 PAPER = ROOT / "examples" / "paper"
 
+EVERYTHING = "VCOR_ALL_TESTS" in os.environ
+
+
+def long_tests(*cases):
+    """Cases that prove once more what others of the same test prove: of the long tests only."""
+    return list(cases) if EVERYTHING else []
+
+
 # Exit codes
 SUCCESS, USAGE, INPUT, FILE, NUMERICAL = 0, 2, 3, 4, 5
 
