@@ -14,7 +14,7 @@ PAPER = ROOT / "examples" / "paper"
 SWEEPS = ROOT / "examples" / "sweeps"
 EVERYTHING = "VCOR_ALL_TESTS" in os.environ
 #: Starts of an identification where a test is not about them
-FEW = 8
+FEW = 3
 
 
 def long_tests(*cases):
