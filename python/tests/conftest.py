@@ -45,6 +45,17 @@ def few_starts(monkeypatch):
 
 
 @pytest.fixture
+def no_figures(monkeypatch):
+    """Commands without their figures, where a test is about the rest: half of their time."""
+    from vcor.materials.master import Master
+    from vcor.uncertainty import Uncertainty
+    from vcor.uncertainty_sweep import Bands
+
+    for made in (Bands, Master, Uncertainty):
+        monkeypatch.setattr(made, "figure", lambda *_: None)
+
+
+@pytest.fixture
 def sls():
     """The SLS case of the paper."""
     import vcor

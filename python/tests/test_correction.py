@@ -275,6 +275,7 @@ def test_a_covariance_is_corrected(tmp_path):
     assert np.allclose(one.table.swing, two.table.swing, rtol=1e-3)
 
 
+@pytest.mark.usefixtures("no_figures")
 def test_an_exact_impact(tmp_path, capsys):
     """The report, the JSON and the attributes say from how many exact impacts, and how good."""
     words = [str(EXAMPLES / "sls_exact.nml"), "--vary", "rubber.beta=5%", "--vary",
@@ -339,6 +340,7 @@ def test_values_beyond_a_range_that_thin_mechanics_do_not_read():
     assert [one._are_in_range() for one in made] == [False, True]
 
 
+@pytest.mark.usefixtures("no_figures")
 def test_files_of_exact_bands_say_how(tmp_path, capsys):
     case = vcor.read(EXAMPLES / "sls_exact.nml").text()
     (tmp_path / "a.nml").write_text(
