@@ -112,6 +112,15 @@ def test_heads(tmp_path, name):
     is_the_material(read(tmp_path, table(*columns, head=head)))
 
 
+@pytest.mark.parametrize("gap", [" ", "   "])
+def test_names_between_blanks_tell_the_encoding(tmp_path, gap):
+    """As names between commas do: of a Chinese file that is no Unicode."""
+    lines = ["频率[Hz] 储能模量[Pa] 损耗模量[Pa]"]
+    lines += [" ".join(f"{x:.10g}" for x in row) for row in zip(HERTZ, STORAGE, LOSS, strict=True)]
+    text = "\n".join(line.replace(" ", gap) for line in lines) + "\n"
+    is_the_material(read(tmp_path, text.encode("gb18030")))
+
+
 LANGUAGES = {
     "en": ("Angular frequency", "Storage modulus", "Loss modulus", "Temperature"),
     "de": ("Kreisfrequenz", "Speichermodul", "Verlustmodul", "Temperatur"),
