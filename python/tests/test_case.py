@@ -647,6 +647,35 @@ def test_a_sweep_over_the_temperature():
         vcor.Case(rubber(shift=False)).sweep({"impact.temperature": temperatures})
 
 
+def test_moduli_are_those_of_the_case_as_it_is():
+    """Two materials in turn, after numbers, texts, lists and groups were set or taken away."""
+    groups = rubber(shift=False)
+    groups["material"].append({"name": "gum", "model": "elastic", "modulus": 5e6,
+                               "poisson_ratio": 0.5, "density": 1000.0})  # fmt: skip
+    case = vcor.Case(groups)
+    one, other = case.material("rubber"), case.material("gum")
+    first = float(one.relaxation(0.0))
+    assert (other.relaxation(0.0), one.relaxation(0.0)) == (5e6, first)
+    case["gum.modulus"] = 6e6
+    assert (one.relaxation(0.0), other.relaxation(0.0)) == (first, 6e6)
+    case["rubber.moduli"] = [2e6, 3e6]
+    assert one.relaxation(0.0) == first + 2e6
+    case["rubber.moduli(1)"] = 3e6
+    assert one.relaxation(0.0) == first + 3e6
+    case["rubber.modulus_kind"] = "shear"
+    assert one.relaxation(0.0) == pytest.approx(2.8 * (first + 3e6))
+    copy = case.copy()
+    copy["gum.modulus"] = 7e6
+    assert (other.relaxation(0.0), copy.material("gum").relaxation(0.0)) == (6e6, 7e6)
+    case["gum.modulus"] = 8e6
+    with pytest.raises(vcor.InputError, match="expected a number > 0"):
+        case["gum.modulus"] = -1.0
+    assert other.relaxation(0.0) == 8e6
+    with pytest.raises(vcor.UsageError):
+        case.material("gumm")
+    assert other.relaxation(0.0) == 8e6
+
+
 def test_moduli_at_a_temperature():
     """Times are longer by the factor a_T."""
     case = vcor.Case(rubber())

@@ -65,7 +65,7 @@ module vcor_c_api_handle
       type(address_t), allocatable :: built_for(:)
       !> Solver that has been settled on the mesh of an impact; unallocated: each has its own
       class(solver_t), allocatable :: solver
-      !> Material that was built last, so that each call for a modulus does not check the case again;
+      !> Material that was built last, so that not every call for a modulus checks the case;
       !> unallocated if it must be built
       class(material_t), allocatable :: body
       !> Its index
