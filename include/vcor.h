@@ -96,7 +96,8 @@ int vcor_copy(const vcor_case *self, vcor_case **copy, vcor_error *error);
 int vcor_dump(const vcor_case *self, char **text, vcor_error *error);
 
 /* The case of a text of vcor_dump, wherever the process is. A text of another version or a damaged one, and
- * data files that have changed since, are VCOR_ERROR_INPUT. On failure *self is NULL. */
+ * data files that have changed since, are VCOR_ERROR_INPUT, one that cannot be read is VCOR_ERROR_FILE. On
+ * failure *self is NULL. */
 int vcor_load(const char *text, vcor_case **self, vcor_error *error);
 
 /* Name of the case: that of its file, or the one that vcor_read was given for a text */
@@ -121,7 +122,7 @@ int vcor_remove_sweeps(vcor_case *self, vcor_error *error);
 int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);
 
 /* Remove the value at an address, so that its default holds; or, by its name, all values of a group that occurs
- * once, such as "target", or a material */
+ * once, such as "target", or a material. A name of both is refused: in quotes, "'target'", it is the material. */
 int vcor_unset(vcor_case *self, const char *address, vcor_error *error);
 
 /* Value at an address as a namelist has it, given or by default, a list of one number with a comma after it;

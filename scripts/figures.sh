@@ -30,22 +30,22 @@ if ! command -v vcor-plot >"$scratch/found"; then
    export PYTHON=${PYTHON:-$top/build/venv/bin/python}
    export PYTHONPATH=$top/python/src${PYTHONPATH:+:$PYTHONPATH}
    export VCOR_LIBRARY=${VCOR_LIBRARY:-$(dirname "$vcor")/libvcor_python.so}
-   "$PYTHON" -c 'import vcor.plot' 2>"$scratch/found" \
+   "$PYTHON" -c 'import sys, importlib.util as u; sys.exit(not all(map(u.find_spec, ["vcor", "matplotlib", "xarray"])))' \
       || fail "no vcor-plot: pip install './python[plot]'"
-   # it notes what is to be drawn, for one Python to draw it all
-   printf '#!/bin/sh\nprintf "%%s\\0" "$@" "" >>"%s/plots"\n' "$scratch" >"$scratch/bin/vcor-plot"
-   # shellcheck disable=SC2016  # the variable is that of the script
-   printf '#!/bin/sh\nexec "$PYTHON" -c "from vcor._command import fit; fit()" "$@"\n' >"$scratch/bin/vcor-fit"
-   chmod +x "$scratch/bin/vcor-plot" "$scratch/bin/vcor-fit"
+   # they note what is to be done, for one Python to do it all
+   for name in plot fit; do
+      printf '#!/bin/sh\nprintf "%%s\\0" %s "$@" "" >>"%s/later"\n' $name "$scratch" >"$scratch/bin/vcor-$name"
+      chmod +x "$scratch/bin/vcor-$name"
+   done
 fi
 awk '/^## / { there = /Gallery/ } /^```sh$/ { on = there; next } /^```$/ { on = 0 } on' "$top/docs/figures.md" >"$scratch/commands.sh"
 
 cd "$scratch"
 PATH="$scratch/bin:$PATH" bash -euo pipefail commands.sh >"$scratch/screen" \
    || fail "a command of docs/figures.md failed"
-[ ! -e plots ] || "$PYTHON" -c '
+[ ! -e later ] || "$PYTHON" -c '
 from vcor._command import call
-for one in open("plots").read().split("\0\0")[:-1]: call("plot", one.split("\0"))
+for one in open("later").read().split("\0\0")[:-1]: name, *words = one.split("\0"); call(name, words)
 ' >"$scratch/screen" || fail "a figure of docs/figures.md failed"
 figures=("$scratch"/*.svg)
 cp "${figures[@]}" "$target"

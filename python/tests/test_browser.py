@@ -46,32 +46,34 @@ def tables(pages):
 
 
 @pytest.fixture(scope="module")
-def browser():
-    with launched() as made:
-        yield made
+def tab():
+    """One for all tests, since a new one takes a second; pages are loaded anew and keep nothing."""
+    with launched() as browser:
+        yield browser.new_context(offline=True).new_page()
 
 
 @pytest.fixture
-def opened(browser, folder):
+def opened(tab, folder):
     """Open a page of a name; at the end nothing has gone wrong in it, and nothing was asked for."""
-    contexts, said, asked = [], [], []
+    said, asked = [], []
+    heard = {
+        "console": lambda one: said.append(one.text) if one.type in ("error", "warning") else 0,
+        "pageerror": lambda error: said.append(str(error)),
+        "request": lambda one: asked.append(one.url),
+    }
+    for event, hear in heard.items():
+        tab.on(event, hear)
 
-    def open_page(name, **options):
-        context = browser.new_context(offline=True, **options)
-        contexts.append(context)
-        shown = context.new_page()
-        shown.on(
-            "console", lambda one: said.append(one.text) if one.type in ("error", "warning") else 0
-        )
-        shown.on("pageerror", lambda error: said.append(str(error)))
-        shown.on("request", lambda one: asked.append(one.url))
-        shown.goto((folder / f"{name}.html").as_uri())
-        shown.wait_for_selector("body[data-ready]")
-        return shown
+    def open_page(name, *, viewport=None, color_scheme=None):
+        tab.set_viewport_size(viewport or {"width": 1280, "height": 720})
+        tab.emulate_media(color_scheme=color_scheme)
+        tab.goto((folder / f"{name}.html").as_uri())
+        tab.wait_for_selector("body[data-ready]")
+        return tab
 
     yield open_page
-    for context in contexts:
-        context.close()
+    for event, hear in heard.items():
+        tab.remove_listener(event, hear)
     assert said == []
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
 
@@ -111,13 +113,11 @@ def test_a_page_opens(opened):
     ]  # fmt: skip
 
 
-def test_a_page_cannot_ask_for_anything(browser, folder):
+def test_a_page_cannot_ask_for_anything(tab, folder):
     """Not even what needs no network: its own policy forbids it."""
-    shown = browser.new_page()
-    shown.goto((folder / "drop.html").as_uri())
+    tab.goto((folder / "drop.html").as_uri())
     with pytest.raises(playwright.Error, match="Failed to fetch"):
-        shown.evaluate("fetch('data:,x')")
-    shown.close()
+        tab.evaluate("fetch('data:,x')")
 
 
 def test_a_slider_moves_the_number_to_that_of_the_program(opened, folder):

@@ -767,3 +767,26 @@ def test_address_that_is_too_long():
     assert case.solve({f"{name}.beta": 600.0}, ["cor"])["cor"] > 0
     with pytest.raises(vcor.InputError, match="an address of 285 bytes, expected at most 255"):
         case.points({f"{name}.beta": [600.0]}, ["cor"])
+
+
+def test_a_material_of_the_name_of_a_group(sls):
+    """Nothing is removed of which it is not clear whether it was meant."""
+    case = vcor.Case(str(sls).replace("'steel'", "'Plate'"))
+    with pytest.raises(vcor.UsageError, match="of a group and of a material"):
+        del case["plate"]
+    assert repr(case.solve()) == repr(sls.solve())
+    del case["'plate'"]
+    assert case["plate.waves"] is not None and "Plate.density" not in case
+
+
+def test_a_name_with_an_equals_sign(sls):
+    name = sls["plate.material"]
+    case = vcor.Case(str(sls).replace(f"'{name}'", "'a=b'"))
+    case["a=b.beta"] = sls[f"{name}.beta"] = 1100.0
+    assert case["a=b.beta"] == 1100.0 and repr(case.solve()) == repr(sls.solve())
+
+
+@pytest.mark.parametrize("other", [None, "rubber.nml", {"material": []}])
+def test_what_is_added_is_a_case(sls, other):
+    with pytest.raises(vcor.UsageError, match="expected a case of &material groups"):
+        sls.add(other)

@@ -1,6 +1,7 @@
 """Bounces under the weight: each against independent solutions, refusals, files, how they end."""
 
 import json
+import re
 
 import h5py
 import numpy as np
@@ -183,6 +184,16 @@ def test_receding_contact_and_pads(vcor):
             "--set", f"contact.law={name}",
         )
         assert float(alone) == pytest.approx(cor, abs=3e-7)
+
+
+def test_the_method_is_refused_before_the_weight(vcor):
+    """A weight, which the paper's scheme would refuse, is not asked for where nothing would bounce."""
+    vcor.write(re.sub("gravity = [^,]*, bounces = [0-9]+", "bounces = 3", case(KNOWN["sls"])))
+    paper = ["--set", "solver.method=direct", "--set", "solver.scheme=adams_bashforth"]
+    done = vcor("check", "case.nml", *paper)
+    assert done.code == INPUT and "scheme = 'product'" in done.err
+    done = vcor("check", "case.nml")
+    assert done.code == INPUT and "expected gravity > 0" in done.err
 
 
 def test_too_many_steps(vcor):

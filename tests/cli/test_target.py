@@ -697,3 +697,10 @@ def test_contact_that_only_just_ends(vcor, stiffness):
     times = [one[0] for one in found]
     assert max(times) > 1.1 * min(times)
     assert found[1][1] > 0.9 * max(abs(time - times[1]) for time in times)
+
+
+def test_an_infinite_plate_is_refused_before_its_thickness(vcor):
+    """What the first refusal asks for is not refused by the next one."""
+    vcor.write(ANVIL)
+    done = vcor("check", "case.nml", "--set", "plate.waves=relaxing")
+    assert done.code == INPUT and "those of an infinite plate" in done.err

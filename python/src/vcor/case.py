@@ -160,6 +160,9 @@ class Case:
 
     def add(self, materials: Case) -> None:
         """Complete the case by &material groups, whose data files stay where they are."""
+        if not isinstance(materials, Case):
+            raise UsageError(f"found {materials!r:.60}, expected a case of &material groups, as "
+                             "vcor.read makes it of a file")  # fmt: skip
         call("vcor_add_materials", self._pointer, materials._pointer)
 
     def __setitem__(self, address: str, value: ArrayLike) -> None:

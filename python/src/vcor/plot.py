@@ -148,17 +148,18 @@ def figure(
     Returns
     -------
     matplotlib.figure.Figure
-        The figure, to be changed or saved.
+        The figure, to be changed or saved; its `get_label` is its kind.
     """
     # a Dataset and a name are iterable, too
     files = [files] if isinstance(files, (xr.Dataset, str, Case)) else listed(files)
-    results = [Result(source, celsius=celsius) for source in files if is_result(source)]
+    sources = [source for source in files if is_result(source)]
+    if len(sources) > MOST:
+        raise UsageError(f"found {len(sources)} results, expected at most {MOST} in one figure")
+    results = [Result(source, celsius=celsius) for source in sources]
     measured = [one for one in files if not is_result(one)]
     data = points.read(measured, columns, units, where)
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
-    if len(results) > MOST:
-        raise UsageError(f"found {len(results)} results, expected at most {MOST} in one figure")
     legends = listed(legends)
     if legends and len(legends) != len(results):
         raise UsageError(
@@ -206,6 +207,7 @@ def figure(
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
         made = draw(wishes)
+        made.set_label(kind)
         _legend(made)
         _adjust(made, wishes)
     shown = {text for axis in made.axes for text in axis.get_legend_handles_labels()[1]}

@@ -43,7 +43,7 @@ module vcor_case_reading
       !> Reasons why values are left out, shape (n)
       type(reason_t), allocatable :: reasons(:)
    contains
-      procedure :: start, mark, leave, has
+      procedure :: start, mark, note_unread, has
       generic :: get => get_logical, get_text
       procedure :: number => read_number
       procedure, private :: get_logical, get_text, leaves, reason_of, why_not
@@ -76,14 +76,14 @@ contains
       if (warns) self%use(address%item, address%row) = is_for_warnings
    end subroutine mark
 
-   !> State why a value is left out
-   pure subroutine leave(self, address, reason)
+   !> State why a value is not read
+   pure subroutine note_unread(self, address, reason)
       class(reading_t), intent(inout) :: self
       type(address_t), intent(in) :: address
       character(len=*), intent(in) :: reason
 
       self%reasons = [self%reasons, reason_t(address, reason)]
-   end subroutine leave
+   end subroutine note_unread
 
    !> Whether a value has been read
    pure function has(self, address)

@@ -18,9 +18,11 @@ module vcor_numeric_nnls
 
    public :: solve_nnls
 
-   !> Part of a column's length orthogonal to those in use below which it counts as dependent
+   !> Part of a column's length orthogonal to those in use below which it counts as dependent: a
+   !> hundred times more or less changes none of 30 impacts with tables of data
    real(wp), parameter :: independent = 1.0e-11_wp
-   !> Gradient, over |b| and for columns of length 1, that is rounding
+   !> Gradient, over |b| and for columns of length 1, that is rounding: with 1e-12 ten of these
+   !> impacts change, by up to 1.8 stated errors, with 1e-16 two, by up to half of one
    real(wp), parameter :: rounding = 1.0e-14_wp
 
 contains

@@ -77,11 +77,13 @@ module vcor_sweep_points
    !> Target time of a round [s]: a killed process loses no more, and it is long against the time in
    !> which ranks and threads wait for each other at its end
    real(wp), parameter :: round_time = 0.2_wp
-   !> Minimum points of a round per thread, so that threads end at about the same time
+   !> Minimum points of a round per thread, so that threads end at about the same time: one of four
+   !> points that takes twice as long keeps the others waiting for a fifth of the round
    integer, parameter :: min_points = 4
-   !> Largest ratio of the length of a round to the one before
+   !> Largest ratio of the length of a round to the one before, as the first points may be untypical
    integer, parameter :: growth = 4
-   !> Largest number of points that a thread takes at once
+   !> Largest number of points that a thread takes at once: 16 thin impacts take a millisecond,
+   !> beside which taking them costs nothing
    integer, parameter :: longest_chunk = 16
 
    !> Largest number of threads of a process

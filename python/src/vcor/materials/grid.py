@@ -314,6 +314,7 @@ def separator_of(lines: list[str]) -> str:
         lines = [*lines[: _SEEN // 2], *lines[-_SEEN // 2 :]]
 
     def numbers(mark: str) -> int:
+        """Cells that become numbers with a mark, in lines with several."""
         counts = [sum(map(is_number, split_line(line, mark))) for line in lines]
         return sum(count for count in counts if count > 1)
 

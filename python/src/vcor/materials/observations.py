@@ -507,11 +507,13 @@ def _as_velocities(
     digits: dict[str, Floats] = {}
 
     def put(name: str, value: Floats, sigma: Floats, digit: Floats) -> None:
+        """Set a column, its scatter where one is given, and the unit of its last digit."""
         columns[name], digits[name] = value, digit
         if not np.isnan(sigma).all():
             columns[f"{name}_sigma"] = sigma
 
     def take(name: str) -> tuple[Floats, Floats]:
+        """Remove a column and its scatter, nan where none is given."""
         sigma = _sigma(columns, name)
         columns.pop(f"{name}_sigma", None)
         return columns.pop(name), sigma

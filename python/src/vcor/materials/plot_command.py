@@ -14,7 +14,7 @@ from .. import _command, _text
 from .._command import FORMATS
 from .._library import UsageError
 from ..plot import COLUMN, KINDS, PAGE, figure, save
-from ..sources import Result, is_result
+from ..sources import is_result
 from .data import add_data_options, columns_option, read_points
 
 #: Units of length [cm]
@@ -115,7 +115,7 @@ def _work(options: argparse.Namespace) -> None:
         settings = _settings(options)
         made = figure(options.files, **settings)
         first = next(name for name in options.files if is_result(name))
-        usual = f"{Path(first).stem}_{options.kind or Result(first).kind()}"
+        usual = f"{Path(first).stem}_{made.get_label()}"
         path = _text.place(options.output, usual, FORMATS, options.format, options.files)
         if options.script and path.stem in sys.modules:
             raise UsageError(f"a script {path.stem}.py would hide the package "
