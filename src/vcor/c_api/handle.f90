@@ -65,6 +65,11 @@ module vcor_c_api_handle
       type(address_t), allocatable :: built_for(:)
       !> Solver that has been settled on the mesh of an impact; unallocated: each has its own
       class(solver_t), allocatable :: solver
+      !> Material that was built last, so that not every call for a modulus checks the case;
+      !> unallocated if it must be built
+      class(material_t), allocatable :: body
+      !> Its index
+      integer :: body_item = 0
    end type handle_t
 
 contains
@@ -166,6 +171,7 @@ contains
 
       logical :: is_number
 
+      if (allocated(handle%body)) deallocate (handle%body)
       if (allocated(handle%solver) .and. place%group == find_group('solver')) &
          deallocate (handle%solver)
       if (allocated(handle%examined) .and. .not. shortens_only(handle%case, place)) &
@@ -204,6 +210,7 @@ contains
    subroutine forget(handle)
       type(handle_t), intent(inout) :: handle
 
+      if (allocated(handle%body)) deallocate (handle%body)
       if (allocated(handle%built_for)) deallocate (handle%built_for)
       if (allocated(handle%tuned)) deallocate (handle%tuned)
       if (allocated(handle%looked_at)) deallocate (handle%looked_at)
@@ -373,19 +380,36 @@ contains
       call demand(name, 'material', error)
       if (allocated(error)) return
 !$omp critical (vcor_c_api)
-      call follow(handle)
-      case = handle%case
-      item = case%find_material(fortran(name))
-      if (item == 0) then
-         call raise(error, error_usage, "there is no material '"//shortened(fortran(name)) &
-            //"'; "//suggestion(canonical_name(fortran(name)), material_names(case)))
-      else
-         call check(case, error)
-      end if
+      call find_name(handle, fortran(name), item, error)
+      if (.not. allocated(error)) call checked(handle, case, error)
 !$omp end critical (vcor_c_api)
    end subroutine find_item
 
-   !> Build a material of a case
+   !> Find the index of a material
+   subroutine find_name(handle, name, item, error)
+      type(handle_t), intent(in) :: handle
+      character(len=*), intent(in) :: name
+      !> Index of the material, 0 if there is none
+      integer, intent(out) :: item
+      type(error_t), allocatable, intent(out) :: error
+
+      item = handle%case%find_material(name)
+      if (item == 0) call raise(error, error_usage, "there is no material '"//shortened(name) &
+         //"'; "//suggestion(canonical_name(name), material_names(handle%case)))
+   end subroutine find_name
+
+   !> A case with its data, checked
+   subroutine checked(handle, case, error)
+      type(handle_t), intent(inout) :: handle
+      type(case_t), intent(out) :: case
+      type(error_t), allocatable, intent(out) :: error
+
+      call follow(handle)
+      case = handle%case
+      call check(case, error)
+   end subroutine checked
+
+   !> Get a material of a case
    subroutine find_body(self, name, material, error)
       type(c_ptr), intent(in) :: self
       !> Name of the material
@@ -393,13 +417,23 @@ contains
       class(material_t), allocatable, intent(out) :: material
       type(error_t), allocatable, intent(out) :: error
 
+      type(handle_t), pointer :: handle
       type(case_t) :: case
       integer :: item
 
-      call find_item(self, name, case, item, error)
+      call open_case(self, handle, error)
+      call demand(name, 'material', error)
       if (allocated(error)) return
 !$omp critical (vcor_c_api)
-      call material_of_case(case, item, material, error)
+      call find_name(handle, fortran(name), item, error)
+      if (allocated(handle%body) .and. handle%body_item /= item) deallocate (handle%body)
+      if (.not. allocated(error) .and. .not. allocated(handle%body)) then
+         call checked(handle, case, error)
+         if (.not. allocated(error)) call material_of_case(case, item, handle%body, error)
+         if (allocated(error) .and. allocated(handle%body)) deallocate (handle%body)
+         handle%body_item = item
+      end if
+      if (.not. allocated(error)) allocate (material, source=handle%body)
 !$omp end critical (vcor_c_api)
    end subroutine find_body
 

@@ -433,11 +433,16 @@ contains
 
       type(entry_t) :: entry
       character(len=:), allocatable :: key, other, model, label, message
+      logical :: is_here, is_other_here
       integer :: row
 
       key = trim(catalogue(address%row)%name)
       other = trim(catalogue(address%row)%instead)
       entry = self%entry(address)
+      is_here = entry%given .or. any(swept == address)
+      ! most keys have no other one, and to look for it takes as long as all else
+      is_other_here = .false.
+      if (other /= '') is_other_here = is_there(other)
       row = self%row(address)
       model = self%model(address%group, address%item)
       message = ''
@@ -446,13 +451,13 @@ contains
             if (entry%given) message = "key '"//key//"' does not belong to "//trim(group%selector) &
                //" '"//model &
                //"', its keys are: "//join_words(keys_of(address%group, model))
-         else if (is_there(key) .and. is_there(other) .and. .not. is_replaced()) then
+         else if (is_here .and. is_other_here .and. .not. is_replaced()) then
             call self%refuse(group%name, other, address%item, 'found both '//key//' and '//other &
                //', expected one of them', error)
          else if (entry%present) then
             message = range_message(catalogue(row), entry)
             if (message /= '') message = key//': '//message
-         else if (catalogue(row)%required .and. .not. (is_there(key) .or. is_there(other))) then
+         else if (catalogue(row)%required .and. .not. (is_here .or. is_other_here)) then
             message = "key '"//key//"' is missing in &"//trim(group%name)
             if (group%label /= '' .and. group%label /= key) then
                call self%get(group%name, group%label, label, address%item)
@@ -473,8 +478,8 @@ contains
          character(len=*), intent(in) :: name
          logical :: yes
 
-         yes = self%given(groups(address%group)%name, name, address%item) .or. name /= '' &
-            .and. any(swept == self%address(groups(address%group)%name, name, address%item))
+         yes = self%given(groups(address%group)%name, name, address%item) &
+            .or. any(swept == self%address(groups(address%group)%name, name, address%item))
       end function is_there
 
       !> Whether one of the two keys is swept, and the other one comes from the case file

@@ -199,7 +199,9 @@ def _decoded(name: str, raw: bytes) -> str:
         except UnicodeDecodeError:
             continue
         head = [line for line in text.splitlines()[:200] if not line.isascii()]
-        cells = [cell for line in head for cell in re.split(r"[;,\t#]", line)]
+        # names may stand between blanks, and have some within
+        ways = (r"[;,\t#]|  +", r"\s+")
+        cells = [cell for line in head for way in ways for cell in re.split(way, line)]
         texts.append((sum(bool(read_head(cell).name) for cell in cells), -len(texts), text))
     return max(texts)[2]
 

@@ -417,12 +417,11 @@ class Moduli:
     def _moduli(self, case: Case) -> Floats:
         """Moduli of a case, which is changed."""
         found = np.empty(len(self.points), dtype=complex)
-        # one for all temperatures, as a new one asks the library whether the case has it
-        material = case.material(self.material)
-        read = material.complex_modulus if self.dynamic else material.relaxation
         for temperature, where in self.groups.items():
             if math.isfinite(temperature):
                 case["impact.temperature"] = temperature
+            material = case.material(self.material)
+            read = material.complex_modulus if self.dynamic else material.relaxation
             found[where] = read(self.points[where])
         return np.concatenate([found.real, found.imag]) if self.dynamic else found.real
 
