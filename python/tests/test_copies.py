@@ -16,7 +16,7 @@ import vcor
 from vcor.case import with_material, with_values
 
 #: Random sequences of settings
-COUNT = 2000 if "VCOR_ALL_TESTS" in os.environ else 50
+COUNT = 2000 if "VCOR_ALL_TESTS" in os.environ else 30
 BASE = """&case title = 'drop' /
 &impact {impact} /
 &sphere {sphere}, material = 'ball' /
@@ -335,7 +335,7 @@ def test_copies_are_the_case(tmp_path, pool):
         expected.append(wanted)
     assert len(solved) > COUNT // 3
     assert list(pool.map(outcome, cases, chunksize=10)) == expected
-    some = solved[: 10 if COUNT == 50 else None]
+    some = solved[: 10 if COUNT == 30 else None]
     one, other = ([f"{seed}/{name}.nml" for seed in some] for name in ("saved", "complete"))
     assert any("with exact mechanics" in line for part in screens(tmp_path, one) for line in part)
     assert screens(tmp_path, one) == screens(tmp_path, other)

@@ -51,24 +51,37 @@ def parsed(name, ending, text, folder):
     return [line for line in lines if line.strip() and not line.startswith(LINES[name])]
 
 
+def bare():
+    """The SLS case on a rigid plate."""
+    case = vcor.read(PAPER / "sls.nml")
+    case["plate.waves"] = "none"
+    return case
+
+
 @pytest.fixture(scope="module")
 def curve():
     """Results that all exports of this page are made of."""
-    case = vcor.read(PAPER / "sls.nml")
-    case["plate.waves"] = "none"
-    return codes.solved(case, VELOCITIES, "cor_sphere", 1)
+    return codes.solved(bare(), VELOCITIES, "cor_sphere", 1)
 
 
-@pytest.mark.parametrize("target", list(codes.TARGETS))
-@settings(max_examples=25)
-@given(title=TITLES, name=TITLES)
-def test_a_title_is_a_comment(tmp_path, curve, target, title, name):
-    case = vcor.read(PAPER / "sls.nml")
-    case["plate.waves"] = "none"
+@pytest.fixture(scope="module", params=list(codes.TARGETS))
+def plain(request, curve, tmp_path_factory):
+    """A target, and its files with a plain title: as they are, and as they are read."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(codes, "solved", lambda *_: curve)
-        plain = vcor.export(case, target, VELOCITIES)
-        text = case.text().replace("'rubber'", written(name, ""))
+        texts = vcor.export(bare(), request.param, VELOCITIES).texts
+    folder = tmp_path_factory.mktemp("plain")
+    read = {ending: parsed(request.param, ending, one, folder) for ending, one in texts.items()}
+    return request.param, texts, read
+
+
+@settings(max_examples=25)
+@given(title=TITLES, name=TITLES)
+def test_a_title_is_a_comment(tmp_path, curve, plain, title, name):
+    target, texts, read = plain
+    text = bare().text().replace("'rubber'", written(name, ""))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(codes, "solved", lambda *_: curve)
         try:
             other = vcor.Case(text)
             other["case.title"] = title
@@ -76,11 +89,10 @@ def test_a_title_is_a_comment(tmp_path, curve, target, title, name):
         except vcor.InputError:
             return
         found = vcor.export(other, target, VELOCITIES)
-    assert found.texts.keys() == plain.texts.keys()
+    assert found.texts.keys() == texts.keys()
     for ending, one in found.texts.items():
-        whole = (parsed(target, ending, each, tmp_path) for each in (one, plain.texts[ending]))
-        assert next(whole) == next(whole)
-        assert one.count("\n") == plain.texts[ending].count("\n")
+        assert parsed(target, ending, one, tmp_path) == read[ending]
+        assert one.count("\n") == texts[ending].count("\n")
 
 
 @pytest.mark.parametrize("target", list(codes.TARGETS))

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import os
 
 import numpy as np
 import pandas as pd
@@ -112,7 +113,7 @@ def test_a_label_without_a_unit(tmp_path):
         read_data(path)
 
 
-@settings(max_examples=400)
+@settings(max_examples=400 if "VCOR_ALL_TESTS" in os.environ else 200)
 @given(
     word=st.sampled_from(WORDS),
     between=st.sampled_from(BETWEEN),

@@ -1,24 +1,18 @@
 """The page of measurements: its script makes its tables and figures again."""
 
 import re
-import subprocess
-import sys
 
 import pytest
-from places import LIMIT, ROOT
+from places import ROOT
 from tables import compare
 
 FILES = sorted((ROOT / "data/measurements").glob("*.csv"))
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(script, tmp_path_factory):
     folder = tmp_path_factory.mktemp("measurements")
-    command = [sys.executable, ROOT / "docs/make_measurements.py", folder]
-    done = subprocess.run(
-        command, capture_output=True, encoding="utf-8", timeout=LIMIT, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    script(ROOT / "docs/make_measurements.py", folder)
     return folder
 
 

@@ -72,16 +72,22 @@ def _answer(caller):
 
 def main():
     """Fork for each call."""
-    # imported as the commands import them, not one used
+    # imported as the commands import them
     import importlib
+    import io
     import signal
 
-    import matplotlib.figure  # noqa: F401
+    import matplotlib.figure
+    import xarray as xr
 
     from vcor._command import MODULES
 
-    for name in MODULES.values():
-        importlib.import_module(f"vcor.{name}")
+    for name in (*(f"vcor.{name}" for name in MODULES.values()), "SALib.sample.sobol", "SALib.analyze.sobol"):
+        importlib.import_module(name)
+    # xarray imports dask with its first column, Matplotlib what writes a file with the first
+    xr.Variable("x", [0.0])
+    for ending in ("svg", "png"):
+        matplotlib.figure.Figure().savefig(io.BytesIO(), format=ending)
     listening = socket.socket(fileno=0)
     # nobody waits for a child, whose client does
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
