@@ -7,6 +7,7 @@ import functools
 import multiprocessing
 import os
 import pickle
+import random
 import signal
 import subprocess
 import sys
@@ -22,6 +23,7 @@ import xarray as xr
 from conftest import EVERYTHING, PAPER, ROOT, SWEEPS, long_tests
 
 import vcor
+from vcor import _coverage, _library
 from vcor.case import as_case
 
 SINGLE = ["sls", "butyl_cerf", "butyl_prony_ghost", "sls_printed",
@@ -518,6 +520,79 @@ def test_points_without_a_result(sls):
         sls.points({"impact.velocity": [1.0]}, ["core"])
     with pytest.raises(vcor.InputError):
         sls.points({})
+
+
+SHIFTED = """
+&impact velocity = 2.0, temperature = 300.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate half_thickness = 0.02, material = 'butyl', waves = 'relaxing' /
+&material name = 'steel', model = 'rigid', density = 7800 /
+&material name = 'butyl', model = 'prony', density = 1100, poisson_ratio = 0.45,
+   equilibrium_modulus = 1e7, moduli = 2e7, 4e7, 9e7, rates = 9e2, 6e3, 3e4, valid_from = 1e-5,
+   shift = 'wlf', wlf_c1 = 9.0, wlf_c2 = 89.0, reference_temperature = 293.15,
+   valid_temperature_to = 305.0 /
+"""
+#: Numbers that loops give, with what makes no impact, or none with a result
+LOOPS = {
+    "impact.velocity": (0.5, 2.0, 20.0, -1.0, 1000.0, np.nan),
+    "impact.drop_height": (0.1, 2.0),
+    "impact.temperature": (280.0, 300.0, 320.0),
+    "sphere.radius": (0.005, 0.01, 12.0),
+    "sphere.mass": (0.01, 0.05),
+    "plate.thickness": (0.01, 0.04, 0.0),
+    "butyl.moduli(2)": (1e7, 4e7, -1.0),
+    "butyl.poisson_ratio": (0.3, 0.5),
+    "butyl.wlf_c2": (50.0, 89.0),
+    "solver.accuracy": (1e-5, 1e-8),
+    "solver.end_time": (1e-2, 1.0, 1e-5),
+}
+
+
+def test_impacts_of_a_loop_do_not_depend_on_those_before():
+    """Numbers, validity and errors are those of a copy, whatever was solved and set."""
+
+    def solved(case, values):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                found = case.solve(values)
+                made = repr(found), found.validity
+            except vcor.Error as error:
+                made = repr(error)
+        return made, [str(one.message) for one in caught if one.category is vcor.ValidityWarning]
+
+    dice, case, given, failed = random.Random(5), vcor.Case(SHIFTED), [], 0
+    for number in range(80):
+        if number % 4 == 0:
+            address = dice.choice(list(LOOPS)[3:])
+            case[address] = dice.choice(LOOPS[address][:2])
+        elif number % 4 == 1:
+            # a loop over one address asks again and again
+            given = dice.sample(list(LOOPS), dice.randint(0, 3))
+        values = {address: dice.choice(LOOPS[address]) for address in given}
+        found = solved(case, values)
+        assert found == solved(case.copy(), values), (number, values)
+        failed += isinstance(found[0], str)
+    assert 5 < failed < 60
+
+
+def test_a_single_impact_is_one_call_of_the_library(sls, monkeypatch):
+    """What there is to say about it comes with it."""
+    names, call = [], _library.call
+    for module in (vcor.case, _coverage):
+        monkeypatch.setattr(module, "call", lambda *given: names.append(given[0]) or call(*given))
+    with pytest.warns(vcor.ValidityWarning, match="sls.nml: validity: outside") as caught:
+        sls.solve({"impact.velocity": 10.0})
+    assert names == ["vcor_impact"] and caught[0].filename == __file__
+
+
+def test_a_loop_names_the_cause_of_each_impact(sls):
+    """The plate is lighter than the ball at one radius and not at another."""
+    case = vcor.Case(str(sls))
+    case["plate.half_thickness"] = 1e-4
+    for radius, words in ((1e-5, "within solver.end_time"), (1e-2, r"plate\.base")):
+        with pytest.raises(vcor.NumericalError, match=words):
+            case.solve({"sphere.radius": radius, "solver.end_time": 1e-9})
 
 
 def test_a_sweep_of_a_case_that_varies_something_else():
