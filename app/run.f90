@@ -248,7 +248,7 @@ contains
          is_lighter = job%sweep%problem%surroundings%is_lighter(impact)
          ! an end of the user's that is early says nothing yet
          was_short = job%case%given('solver', 'end_time') &
-            .and. last < impact%patience(impact%time_scale())
+            .and. last < impact%lasting_time(impact%time_scale())
       end associate
       if (outcome%status == contact_lasting) then
          reason = 'give a longer solver.end_time'

@@ -49,7 +49,7 @@ HONEST, ROUNDING = 3.0, 1e-12
 REFERENCE_ERROR = 1.2e-11
 #: The contact time, and the residual indentation that moves with it, are promised down to this
 BEST_TIME = 1e-9
-#: What counts as a rebound, of cor and cor_sphere
+#: Least cor and cor_sphere that count as a rebound
 REBOUND = 0.01
 #: Bound of the error of each column over the accuracy, for ive, as docs/accuracy.md has it
 BOUNDS = dict(cor=1, cor_sphere=1, contact_time=1, max_indentation=1, max_force=1,
@@ -252,7 +252,7 @@ class Family:
 
     name: str
     count: int
-    #: What they are, for the reader
+    #: Description for the reader
     about: str
     #: The next case of a make_impacts.Draw
     draw: Callable = Draw.case
@@ -367,7 +367,7 @@ def small(value):
 
 
 def families_table(families):
-    """What the families are, and how well the best solution is confirmed."""
+    """The families, and how well the best solution is confirmed."""
     lines = []
     for name, about, impacts in families:
         apart = sorted(one.apart for one in impacts if math.isfinite(one.apart))
@@ -378,7 +378,7 @@ def families_table(families):
 
 
 def results_table(families):
-    """What became of the runs."""
+    """Verdicts on the runs."""
     lines = []
     for name, _, impacts in families:
         for i, run in enumerate(impacts[0].verdicts):

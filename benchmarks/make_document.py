@@ -180,7 +180,7 @@ def first_line(*command):
 
 
 def machine():
-    """What it ran on."""
+    """The machine on which it ran."""
     try:
         info = pathlib.Path("/proc/cpuinfo").read_text()
         processor = re.search(r"model name\s*:\s*(.*)", info).group(1)

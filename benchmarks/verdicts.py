@@ -32,7 +32,7 @@ import numpy as np  # noqa: E402
 import vcor  # noqa: E402
 
 TOP = Path(__file__).resolve().parent.parent
-#: What a class prescribes: waves, law and pair, or None where they are drawn
+#: Waves, law and pair that a class prescribes, or None where they are drawn
 CLASSES = {
     "paper": ("relaxing", "boltzmann", "eq1"),
     "hereditary": ("hereditary", "receding", "series"),

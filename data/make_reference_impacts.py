@@ -26,7 +26,7 @@ UNITS = {
     "residual_indentation": "m", "hysteresis_energy": "J", "wave_energy": "J", "initial_energy": "J",
     "contact_radius": "m",
 }  # fmt: skip
-#: What the error of a quantity is relative to
+#: Number to which the error of a quantity is relative
 SCALES = {
     "cor": 1.0, "cor_sphere": 1.0, "residual_indentation": "max_indentation",
     "hysteresis_energy": "initial_energy", "wave_energy": "initial_energy",

@@ -671,7 +671,7 @@ def resilience():
 
 
 def lighter(one, radius, wanted):
-    """What might explain a rebound below that of a fixed pad: cells of the table."""
+    """Possible reasons for a rebound below that of a fixed pad: cells of the table."""
     quantities = ["resilience", "layer_strain"]
     fixed = one.solve({"sphere.radius": radius}, quantities)
     stiff = one.copy()

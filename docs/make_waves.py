@@ -132,7 +132,7 @@ def markdown(lines):
 
 
 def pads():
-    """What a test piece of a rebound test does on its floor, against its thickness, and as a half space."""
+    """Rebound of a test piece on its floor against its thickness, and of a half space."""
     lines = [["thickness", "contact time", "largest force", "resilience", "$a/H$", "stiffening"]]
     names = ["contact_time", "max_force", "resilience", "layer_ratio", "layer_stiffening"]
     one = vcor.read(ROOT / PAD)

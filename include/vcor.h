@@ -96,7 +96,8 @@ int vcor_copy(const vcor_case *self, vcor_case **copy, vcor_error *error);
 int vcor_dump(const vcor_case *self, char **text, vcor_error *error);
 
 /* The case of a text of vcor_dump, wherever the process is. A text of another version or a damaged one, and
- * data files that have changed since, are VCOR_ERROR_INPUT. On failure *self is NULL. */
+ * data files that have changed since, are VCOR_ERROR_INPUT, one that cannot be read is VCOR_ERROR_FILE. On
+ * failure *self is NULL. */
 int vcor_load(const char *text, vcor_case **self, vcor_error *error);
 
 /* Name of the case: that of its file, or the one that vcor_read was given for a text */
@@ -121,7 +122,7 @@ int vcor_remove_sweeps(vcor_case *self, vcor_error *error);
 int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);
 
 /* Remove the value at an address, so that its default holds; or, by its name, all values of a group that occurs
- * once, such as "target", or a material */
+ * once, such as "target", or a material. A name of both is refused: in quotes, "'target'", it is the material. */
 int vcor_unset(vcor_case *self, const char *address, vcor_error *error);
 
 /* Value at an address as a namelist has it, given or by default, a list of one number with a comma after it;
@@ -174,24 +175,36 @@ int vcor_settle(vcor_case *self, vcor_error *error);
 int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                int k, const char *const *columns, double *results, int threads, vcor_error *error);
 
+/* Solve one impact, in which m addresses have values of their own, and say what there is to say about it: for
+ * loops. With m = 0 it is that of the case itself. An impact without a result is an error, whose message says why;
+ * its status is among the results nevertheless.
+ *
+ *   values       m numbers
+ *   results      k numbers, those of the columns
+ *   units        numbers that look like those in another unit, as vcor_warnings has them, also on failure
+ *   validity     a line, if a measure of validity is not good
+ *   beyond_data  what the data of the materials do not cover, as vcor_beyond_data has it. Up to four impacts more
+ *                are solved for it, but only if the contact is shorter or longer than those before it of the same
+ *                values but for velocity and drop height; else it is what is said of the shortest and the longest
+ *
+ * The last three are texts, `*units` and so on NULL if there is nothing to say; each may be NULL where nobody asks. */
+int vcor_impact(vcor_case *self, int m, const char *const *addresses, const double *values, int k,
+                const char *const *columns, double *results, char **units, char **validity,
+                char **beyond_data, vcor_error *error);
+
 /* Numbers that look like those in another unit, such as a radius of 15 m: a line for each, of the case and
  * of the values of n points, which are those of vcor_solve. Each is given once for a case and its later copies. A
- * single point (n = 1), or the case as it is (m = 0), is looked at again only when other addresses have values,
- * so that a loop may call this before each vcor_solve. `*text` is NULL if there is nothing new. */
+ * single point (n = 1), or the case as it is (m = 0), is looked at again only when other addresses have values.
+ * `*text` is NULL if there is nothing new. */
 int vcor_warnings(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                   char **text, vcor_error *error);
-
-/* Whether a material of a body has data of a known range, 1 or 0: a fit with valid_from and the like, a table, or a
- * table of shifts. Without any there is nothing to ask vcor_beyond_data. */
-int vcor_has_data(vcor_case *self, int *has, vcor_error *error);
 
 /* What the data behind the materials do not say about n points that vcor_solve has solved: contacts that
  * begin before the data of a fit (valid_from, valid_to) or of a table, or last longer, with the change of cor
  * that depends on it, and temperatures outside of those of a shift. `statuses`, `contact_times` and `cors`
  * are the columns status, contact_time and cor of the points. A line for each remark; `*text` is empty if the
  * data say all that matters, and NULL if no material has data of a known range. Of a fit it solves up to four
- * impacts more, while other calls wait: a single point (n = 1) is examined only if its contact is shorter or longer
- * than those before it of the same values but for velocity and drop height, else what was said of these is. */
+ * impacts more, while other calls wait. */
 int vcor_beyond_data(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                      const double *statuses, const double *contact_times, const double *cors,
                      char **text, vcor_error *error);

@@ -12,6 +12,14 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PAPER = ROOT / "examples" / "paper"
 SWEEPS = ROOT / "examples" / "sweeps"
+EVERYTHING = "VCOR_ALL_TESTS" in os.environ
+#: Starts of an identification where a test is not about them
+FEW = 3
+
+
+def long_tests(*cases):
+    """Cases that prove once more what others of the same test prove: of the long tests only."""
+    return list(cases) if EVERYTHING else []
 
 
 @pytest.fixture
@@ -32,8 +40,19 @@ def few_starts(monkeypatch):
     """Identification from fewer starts, where a test is not about them: most of its time."""
     from vcor.materials import search
 
-    if "VCOR_ALL_TESTS" not in os.environ:
-        monkeypatch.setattr(search, "STARTS", 8)
+    if not EVERYTHING:
+        monkeypatch.setattr(search, "STARTS", FEW)
+
+
+@pytest.fixture
+def no_figures(monkeypatch):
+    """Commands without their figures, where a test is about the rest: half of their time."""
+    from vcor.materials.master import Master
+    from vcor.uncertainty import Uncertainty
+    from vcor.uncertainty_sweep import Bands
+
+    for made in (Bands, Master, Uncertainty):
+        monkeypatch.setattr(made, "figure", lambda *_: None)
 
 
 @pytest.fixture

@@ -86,11 +86,15 @@ def arguments(case):
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "k?": 1, "columns": cor, "results": doubles(0.0), "threads?": 1,
         },
+        "vcor_impact": {
+            "case": case, "m?": 1, "addresses": velocity, "values": doubles(1.0), "k?": 1,
+            "columns": cor, "results": doubles(0.0), "units?": None, "validity?": None,
+            "beyond_data?": None,
+        },
         "vcor_warnings": {
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "text": byref(text),
         },
-        "vcor_has_data": {"case": case, "has": byref(count)},
         "vcor_beyond_data": {
             "case": case, "m?": 1, "addresses": velocity, "n?": 1, "values": doubles(1.0),
             "statuses": doubles(0.0), "contact_times": doubles(1e-3), "cors": doubles(0.5),
@@ -161,6 +165,35 @@ def test_numbers_of_a_table(case, key, value, words):
     code, line = called("vcor_solve", *(arguments(case)["vcor_solve"] | {key: value}).values())
     assert code == USAGE
     assert words in line
+
+
+def test_what_there_is_to_say_about_an_impact(case):
+    """The texts that are asked for, numbers in another unit and the status also on failure."""
+
+    def solved(velocity, *asked):
+        results, texts = doubles(0.0, 0.0), {name: c_void_p() for name in asked}
+        places = [byref(texts[name]) if name in texts else None for name in ("u", "v", "b")]
+        code, line = called("vcor_impact", case, 1, names(b"impact.velocity"), doubles(velocity), 2,
+                            names(b"status", b"cor"), results, *places)  # fmt: skip
+        said = {name: _library.take_text(text) for name, text in texts.items()}
+        return code, line, said, list(results)
+
+    assert called("vcor_set", case, b"solver.end_time", b"1e-6") == (0, "")
+    code, line, said, (status, cor) = solved(1000.0, "u", "v", "b")
+    assert (code, status) == (5, 1.0) and math.isnan(cor)
+    assert "sls.nml: the bodies do not separate: the plate is free on both sides" in line
+    assert said["u"] == "impact.velocity = 1000.0 m/s is more than 300.0: is it in mm/s?"
+    assert said["v"] is said["b"] is None
+    assert called("vcor_unset", case, b"solver.end_time") == (0, "")
+    code, line, said, (status, cor) = solved(10.0, "u", "v", "b")
+    assert (code, line, status) == (0, "", 0.0) and 0.43 < cor < 0.44
+    assert said["v"].endswith("sls.nml: validity: outside (cor_deviation)")
+    assert said["u"] is said["b"] is None
+    assert solved(10.0)[2] == {} and solved(10.0)[3] == [status, cor]
+    assert called("vcor_set", case, b"rubber.valid_from", b"1e-4") == (0, "")
+    assert "cor changes by" in solved(10.0, "b")[2]["b"]
+    code, line, _, (status, cor) = solved(-1.0, "u")
+    assert (code, status) == (INPUT, 3.0) and "out of range" in line
 
 
 def test_tables_without_elements(case):

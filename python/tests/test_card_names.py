@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 from conftest import PAPER
-from properties import example, given, settings, st
+from properties import example, examples, given, st
 
 import vcor
 from vcor.exchange.card_formats import FORMATS, UNITS, Card
@@ -64,7 +64,7 @@ def group_of(made):
 
 
 @pytest.mark.parametrize("code", FORMATS)
-@settings(max_examples=60)
+@examples(60)
 @given(data=st.data(), units=st.sampled_from(list(UNITS)), tell=st.booleans())
 def test_a_written_card_is_read_back(tmp_path, code, data, units, tell):
     made = data.draw(materials(code))

@@ -7,6 +7,7 @@ import functools
 import multiprocessing
 import os
 import pickle
+import random
 import signal
 import subprocess
 import sys
@@ -19,12 +20,14 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from conftest import PAPER, ROOT, SWEEPS
+from conftest import EVERYTHING, PAPER, ROOT, SWEEPS, long_tests
 
 import vcor
+from vcor import _coverage, _library
 from vcor.case import as_case
 
-SINGLE = ["sls", "butyl_cerf", "butyl_power_law", "elastic", "butyl_prony_ghost", "sls_printed"]
+SINGLE = ["sls", "butyl_cerf", "butyl_prony_ghost", "sls_printed",
+          *long_tests("butyl_power_law", "elastic")]  # fmt: skip
 GROUPS = {
     "case": {"title": "it's a ball"},
     "impact": {"velocity": 10.0},
@@ -66,14 +69,15 @@ def test_a_single_impact(program, tmp_path, name):
     program("run", PAPER / f"{name}.nml", "--output", tmp_path, "--quiet")
     case = vcor.read(PAPER / f"{name}.nml")
     stem = case["output.stem"]
-    assert same(case.run(), vcor.open(tmp_path / f"{stem}.h5"))
+    found = case.run()
+    assert same(found, vcor.open(tmp_path / f"{stem}.h5"))
     assert same(case.history(), vcor.open(tmp_path / f"{stem}.h5", "history"))
-    attrs = case.run().attrs
+    attrs = dict(found.attrs)
     # solved for who looks at it: the screen and `run`, not a file
     assert attrs.pop("exact_cor_sphere", 0.0) >= 0.0
     assert attrs == vcor.open(tmp_path / f"{stem}.h5").attrs
     numbers = xr.Dataset({name: ((), value) for name, value in case.solve().items()})
-    for name, value in case.run().items():
+    for name, value in found.items():
         assert np.array_equal(numbers[name], value, equal_nan=value.dtype.kind == "f"), name
 
 
@@ -117,11 +121,15 @@ def test_every_column_is_that_of_the_csv_file(program, tmp_path):
     assert same(case.sweep(axes, progress=False), cube)
     assert set(rows[0]) == {*axes, *cube.data_vars} == {*axes, *points.data_vars}
     columns = {name: cube[name].values.ravel() for name in cube.data_vars}
+    arrays = {name: one.values for name, one in points.items()}
     for i, row in enumerate(rows):
-        one = case.solve({name: values[name][i] for name in axes})
+        some = [columns, arrays]
+        if EVERYTHING or i % 7 == 0:
+            one = case.solve({name: values[name][i] for name in axes})
+            some.append({name: {i: value} for name, value in one.items()})
         for name, column in columns.items():
             shown = row[name] if column.dtype.kind == "U" else float(row[name])
-            for value in (column[i], points[name].values[i], one[name]):
+            for value in (found[name][i] for found in some):
                 assert value == shown or value != value and shown != shown, (name, i)
 
 
@@ -514,6 +522,79 @@ def test_points_without_a_result(sls):
         sls.points({})
 
 
+SHIFTED = """
+&impact velocity = 2.0, temperature = 300.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate half_thickness = 0.02, material = 'butyl', waves = 'relaxing' /
+&material name = 'steel', model = 'rigid', density = 7800 /
+&material name = 'butyl', model = 'prony', density = 1100, poisson_ratio = 0.45,
+   equilibrium_modulus = 1e7, moduli = 2e7, 4e7, 9e7, rates = 9e2, 6e3, 3e4, valid_from = 1e-5,
+   shift = 'wlf', wlf_c1 = 9.0, wlf_c2 = 89.0, reference_temperature = 293.15,
+   valid_temperature_to = 305.0 /
+"""
+#: Numbers that loops give, with what makes no impact, or none with a result
+LOOPS = {
+    "impact.velocity": (0.5, 2.0, 20.0, -1.0, 1000.0, np.nan),
+    "impact.drop_height": (0.1, 2.0),
+    "impact.temperature": (280.0, 300.0, 320.0),
+    "sphere.radius": (0.005, 0.01, 12.0),
+    "sphere.mass": (0.01, 0.05),
+    "plate.thickness": (0.01, 0.04, 0.0),
+    "butyl.moduli(2)": (1e7, 4e7, -1.0),
+    "butyl.poisson_ratio": (0.3, 0.5),
+    "butyl.wlf_c2": (50.0, 89.0),
+    "solver.accuracy": (1e-5, 1e-8),
+    "solver.end_time": (1e-2, 1.0, 1e-5),
+}
+
+
+def test_impacts_of_a_loop_do_not_depend_on_those_before():
+    """Numbers, validity and errors are those of a copy, whatever was solved and set."""
+
+    def solved(case, values):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                found = case.solve(values)
+                made = repr(found), found.validity
+            except vcor.Error as error:
+                made = repr(error)
+        return made, [str(one.message) for one in caught if one.category is vcor.ValidityWarning]
+
+    dice, case, given, failed = random.Random(5), vcor.Case(SHIFTED), [], 0
+    for number in range(80):
+        if number % 4 == 0:
+            address = dice.choice(list(LOOPS)[3:])
+            case[address] = dice.choice(LOOPS[address][:2])
+        elif number % 4 == 1:
+            # a loop over one address asks again and again
+            given = dice.sample(list(LOOPS), dice.randint(0, 3))
+        values = {address: dice.choice(LOOPS[address]) for address in given}
+        found = solved(case, values)
+        assert found == solved(case.copy(), values), (number, values)
+        failed += isinstance(found[0], str)
+    assert 5 < failed < 60
+
+
+def test_a_single_impact_is_one_call_of_the_library(sls, monkeypatch):
+    """What there is to say about it comes with it."""
+    names, call = [], _library.call
+    for module in (vcor.case, _coverage):
+        monkeypatch.setattr(module, "call", lambda *given: names.append(given[0]) or call(*given))
+    with pytest.warns(vcor.ValidityWarning, match="sls.nml: validity: outside") as caught:
+        sls.solve({"impact.velocity": 10.0})
+    assert names == ["vcor_impact"] and caught[0].filename == __file__
+
+
+def test_a_loop_names_the_cause_of_each_impact(sls):
+    """The plate is lighter than the ball at one radius and not at another."""
+    case = vcor.Case(str(sls))
+    case["plate.half_thickness"] = 1e-4
+    for radius, words in ((1e-5, "within solver.end_time"), (1e-2, r"plate\.base")):
+        with pytest.raises(vcor.NumericalError, match=words):
+            case.solve({"sphere.radius": radius, "solver.end_time": 1e-9})
+
+
 def test_a_sweep_of_a_case_that_varies_something_else():
     case = vcor.read(SWEEPS / "sls_velocity.nml")
     with pytest.raises(vcor.InputError, match=r"sls_velocity\.nml:\d+: the case varies"):
@@ -641,6 +722,35 @@ def test_a_sweep_over_the_temperature():
         vcor.Case(rubber(shift=False)).sweep({"impact.temperature": temperatures})
 
 
+def test_moduli_are_those_of_the_case_as_it_is():
+    """Two materials in turn, after numbers, texts, lists and groups were set or taken away."""
+    groups = rubber(shift=False)
+    groups["material"].append({"name": "gum", "model": "elastic", "modulus": 5e6,
+                               "poisson_ratio": 0.5, "density": 1000.0})  # fmt: skip
+    case = vcor.Case(groups)
+    one, other = case.material("rubber"), case.material("gum")
+    first = float(one.relaxation(0.0))
+    assert (other.relaxation(0.0), one.relaxation(0.0)) == (5e6, first)
+    case["gum.modulus"] = 6e6
+    assert (one.relaxation(0.0), other.relaxation(0.0)) == (first, 6e6)
+    case["rubber.moduli"] = [2e6, 3e6]
+    assert one.relaxation(0.0) == first + 2e6
+    case["rubber.moduli(1)"] = 3e6
+    assert one.relaxation(0.0) == first + 3e6
+    case["rubber.modulus_kind"] = "shear"
+    assert one.relaxation(0.0) == pytest.approx(2.8 * (first + 3e6))
+    copy = case.copy()
+    copy["gum.modulus"] = 7e6
+    assert (other.relaxation(0.0), copy.material("gum").relaxation(0.0)) == (6e6, 7e6)
+    case["gum.modulus"] = 8e6
+    with pytest.raises(vcor.InputError, match="expected a number > 0"):
+        case["gum.modulus"] = -1.0
+    assert other.relaxation(0.0) == 8e6
+    with pytest.raises(vcor.UsageError):
+        case.material("gumm")
+    assert other.relaxation(0.0) == 8e6
+
+
 def test_moduli_at_a_temperature():
     """Times are longer by the factor a_T."""
     case = vcor.Case(rubber())
@@ -732,3 +842,26 @@ def test_address_that_is_too_long():
     assert case.solve({f"{name}.beta": 600.0}, ["cor"])["cor"] > 0
     with pytest.raises(vcor.InputError, match="an address of 285 bytes, expected at most 255"):
         case.points({f"{name}.beta": [600.0]}, ["cor"])
+
+
+def test_a_material_of_the_name_of_a_group(sls):
+    """Nothing is removed of which it is not clear whether it was meant."""
+    case = vcor.Case(str(sls).replace("'steel'", "'Plate'"))
+    with pytest.raises(vcor.UsageError, match="of a group and of a material"):
+        del case["plate"]
+    assert repr(case.solve()) == repr(sls.solve())
+    del case["'plate'"]
+    assert case["plate.waves"] is not None and "Plate.density" not in case
+
+
+def test_a_name_with_an_equals_sign(sls):
+    name = sls["plate.material"]
+    case = vcor.Case(str(sls).replace(f"'{name}'", "'a=b'"))
+    case["a=b.beta"] = sls[f"{name}.beta"] = 1100.0
+    assert case["a=b.beta"] == 1100.0 and repr(case.solve()) == repr(sls.solve())
+
+
+@pytest.mark.parametrize("other", [None, "rubber.nml", {"material": []}])
+def test_what_is_added_is_a_case(sls, other):
+    with pytest.raises(vcor.UsageError, match="expected a case of &material groups"):
+        sls.add(other)

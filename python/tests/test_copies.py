@@ -7,6 +7,7 @@ import os
 import pickle
 import random
 import subprocess
+import zlib
 
 import pytest
 from conftest import PAPER
@@ -246,13 +247,28 @@ def test_a_dump_of_something_else_is_refused(tmp_path, monkeypatch):
             make(data)
     points = tmp_path / "points.csv"
     other_points = functools.partial(points.write_text, POINTS.replace("6e6", "7e6"))
-    for change in (points.unlink, other_points):
-        change()
-        with pytest.raises(vcor.InputError, match=r"points\.csv: it is not the file"):
-            make(dump)
+    points.unlink()
+    with pytest.raises(vcor.FileError, match=r"points\.csv: there is no such file"):
+        make(dump)
+    other_points()
+    with pytest.raises(vcor.InputError, match=r"points\.csv: it is not the file"):
+        make(dump)
     points.write_text(POINTS)
     monkeypatch.chdir(tmp_path.parent)
     assert repr(make(dump).solve()) == repr(case.solve())
+
+
+def test_a_dump_of_another_build_is_refused(sls):
+    """One of the same version, with a check sum that is right, and other fields."""
+    make, (dump,) = sls.__reduce__()
+    head, _, fields = dump.partition(b"\n")
+    short = fields[: fields.rindex(b"\n", 0, -1) + 1]
+    name = fields.partition(b"\n")[0]
+    swapped = (fields.replace(name, b"-1:x"), fields.replace(b"1:0\n", b"1:y\n", 1))
+    for other in (b"", b"x", short, fields + b"1:0\n", fields[:20], b"99999999999:x\n", *swapped):
+        made = head[: head.rindex(b" ") + 1] + b"%08X\n" % zlib.crc32(other) + other
+        with pytest.raises(vcor.InputError, match="damaged"):
+            make(made)
 
 
 def test_materials_and_sweeps_are_replaced_in_a_copy():

@@ -1,7 +1,7 @@
 """Exact results from corrected thin ones: polynomials, samples and bands against solved samples."""
 
+import copy
 import json
-import os
 import re
 import types
 import warnings
@@ -9,13 +9,13 @@ import warnings
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import PAPER, ROOT
+from conftest import EVERYTHING, FEW, PAPER, ROOT, long_tests
 
 import vcor
 from vcor import _command, uncertainty_samples
 from vcor._correction import Coordinates, Correction, parts_of
 from vcor._kriging import Kriged
-from vcor.materials import identification_exact
+from vcor.materials import identification_exact, search
 from vcor.materials.limits import Fit
 from vcor.materials.observations import observations
 from vcor.materials.search import Problem
@@ -111,12 +111,13 @@ def thin_case(file, **settings):
 
 
 @pytest.mark.parametrize(("file", "settings"), [
-    ("paper/sls.nml", {}), ("paper/sls.nml", {"contact__law": "receding"}),
-    ("paper/sls.nml", {"plate__waves": "constant"}), ("paper/sls.nml", {"impact__velocity": 0.5}),
-    ("paper/butyl_prony.nml", {}), ("paper/butyl_prony.nml", {"plate__waves": "constant"}),
-    ("paper/butyl_power_law.nml", {}), ("paper/butyl_cerf.nml", {}),
-    ("paper/butyl_cerf.nml", {"contact__law": "receding"}),
+    ("paper/sls.nml", {}), ("paper/butyl_prony.nml", {"plate__waves": "constant"}),
+    ("paper/butyl_power_law.nml", {}), ("paper/butyl_cerf.nml", {"contact__law": "receding"}),
     ("glass_bead_on_pmma.nml", {"plate__waves": "relaxing"}),
+    *long_tests(("paper/sls.nml", {"contact__law": "receding"}),
+                ("paper/sls.nml", {"plate__waves": "constant"}),
+                ("paper/sls.nml", {"impact__velocity": 0.5}),
+                ("paper/butyl_prony.nml", {}), ("paper/butyl_cerf.nml", {})),
 ])  # fmt: skip
 def test_corrected_samples_are_those_that_are_solved(file, settings):
     """Ten thin cases from others without their waves, or with those of other laws."""
@@ -274,6 +275,7 @@ def test_a_covariance_is_corrected(tmp_path):
     assert np.allclose(one.table.swing, two.table.swing, rtol=1e-3)
 
 
+@pytest.mark.usefixtures("no_figures")
 def test_an_exact_impact(tmp_path, capsys):
     """The report, the JSON and the attributes say from how many exact impacts, and how good."""
     words = [str(EXAMPLES / "sls_exact.nml"), "--vary", "rubber.beta=5%", "--vary",
@@ -338,6 +340,7 @@ def test_values_beyond_a_range_that_thin_mechanics_do_not_read():
     assert [one._are_in_range() for one in made] == [False, True]
 
 
+@pytest.mark.usefixtures("no_figures")
 def test_files_of_exact_bands_say_how(tmp_path, capsys):
     case = vcor.read(EXAMPLES / "sls_exact.nml").text()
     (tmp_path / "a.nml").write_text(
@@ -354,7 +357,7 @@ def test_files_of_exact_bands_say_how(tmp_path, capsys):
     assert len(pd.read_csv(tmp_path / "a_uncertainty.csv", comment="#")) == 3
 
 
-@pytest.mark.skipif("VCOR_ALL_TESTS" not in os.environ, reason="takes long: scripts/test_long.sh")
+@pytest.mark.skipif(not EVERYTHING, reason="takes long: scripts/test_long.sh")
 @pytest.mark.parametrize(("file", "keys"), [
     (EXAMPLES / "sls_exact.nml", ("beta", "glassy_modulus")),
     (EXAMPLES / "rubber_pad_on_steel.nml", ("equilibrium_modulus", "moduli(3)")),
@@ -395,6 +398,7 @@ def exact_drops(velocities, **settings):
     return case, data
 
 
+@pytest.mark.usefixtures("few_starts")
 def test_identification_with_exact_mechanics():
     """The parameters that data were made with, at the minimum of exact impacts, and how good."""
     case, data = exact_drops(np.array([0.1, 0.3, 0.9]))
@@ -422,6 +426,7 @@ def test_identification_with_exact_mechanics():
     assert middle[20] == pytest.approx(wanted, abs=1e-4)
 
 
+@pytest.mark.usefixtures("few_starts")
 def test_the_minimum_is_that_of_exact_impacts():
     """Of coefficients with noise; with one correction for all parameters it is 0.1 errors off."""
     case, data = exact_drops(np.geomspace(0.1, 1.0, 6))
@@ -451,7 +456,8 @@ def test_the_minimum_is_that_of_exact_impacts():
     assert found.chi2 == pytest.approx(r[0] @ r[0], abs=1e-3)
 
 
-def corrected_drops():
+@pytest.fixture(scope="module")
+def solved_drops():
     """A problem of two exact drops, thin mechanics corrected at its guess and its least squares."""
     case, data = exact_drops(np.array([0.1, 0.9]))
     free = ["rubber.glassy_modulus", "rubber.beta"]
@@ -459,14 +465,22 @@ def corrected_drops():
     blocks = observations(case, data, free)
     bar = types.SimpleNamespace(update=lambda _: None)
     problem = Problem(case, free, blocks, {}, bar)
-    x, chi2 = identification_exact.corrected(problem, 1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "STARTS", FEW)
+        x, chi2 = identification_exact.corrected(problem, 1)
     best = Fit(problem, x, chi2, *problem.derivatives(x))
     return problem, best, [best.intervals(i) for i in range(2)]
 
 
-def test_intervals_with_another_number_of_contacts_are_solved(monkeypatch):
+@pytest.fixture
+def corrected_drops(solved_drops):
+    """The same, which a test may change."""
+    return copy.deepcopy(solved_drops)
+
+
+def test_intervals_with_another_number_of_contacts_are_solved(monkeypatch, corrected_drops):
     """A correction is not fitted across such a jump, nor where there is no result."""
-    problem, best, limits = corrected_drops()
+    problem, best, limits = corrected_drops
     made = problem.corrected
     solve = identification_exact.Corrected.solve
 
@@ -493,8 +507,8 @@ def test_intervals_with_another_number_of_contacts_are_solved(monkeypatch):
     assert identification_exact.is_exact(best, limits, 1)
 
 
-def test_ends_that_are_off_are_met_again(monkeypatch):
-    problem, best, limits = corrected_drops()
+def test_ends_that_are_off_are_met_again(monkeypatch, corrected_drops):
+    problem, best, limits = corrected_drops
     made = problem.corrected
     known = len(made.known)
     predict = problem.predict
@@ -536,7 +550,7 @@ def test_cheap_impacts_are_identified_without_a_correction():
     assert found.solved == 0 and "correction" not in str(found)
 
 
-@pytest.mark.skipif("VCOR_ALL_TESTS" not in os.environ, reason="takes long: scripts/test_long.sh")
+@pytest.mark.skipif(not EVERYTHING, reason="takes long: scripts/test_long.sh")
 def test_exact_intervals_are_those_of_solved_impacts(monkeypatch):
     """Without a correction, which takes minutes."""
     case, data = exact_drops(np.array([0.1, 0.9]))

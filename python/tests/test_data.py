@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from properties import HealthCheck, assume, given, settings, st
+from properties import assume, examples, given, st
 
 import vcor
 from vcor import _command
@@ -112,6 +112,15 @@ def test_heads(tmp_path, name):
     is_the_material(read(tmp_path, table(*columns, head=head)))
 
 
+@pytest.mark.parametrize("gap", [" ", "   "])
+def test_names_between_blanks_tell_the_encoding(tmp_path, gap):
+    """As names between commas do: of a Chinese file that is no Unicode."""
+    lines = ["频率[Hz] 储能模量[Pa] 损耗模量[Pa]"]
+    lines += [" ".join(f"{x:.10g}" for x in row) for row in zip(HERTZ, STORAGE, LOSS, strict=True)]
+    text = "\n".join(line.replace(" ", gap) for line in lines) + "\n"
+    is_the_material(read(tmp_path, text.encode("gb18030")))
+
+
 LANGUAGES = {
     "en": ("Angular frequency", "Storage modulus", "Loss modulus", "Temperature"),
     "de": ("Kreisfrequenz", "Speichermodul", "Verlustmodul", "Temperatur"),
@@ -124,8 +133,7 @@ ENCODINGS = {"en": "ascii", "de": "cp1252", "fr": "cp1252", "es": "cp1252", "ja"
              "zh": "gb18030"}  # fmt: skip
 
 
-@settings(max_examples=150, deadline=None, derandomize=True,
-          suppress_health_check=[HealthCheck.function_scoped_fixture])  # fmt: skip
+@examples(150)
 @given(
     language=st.sampled_from(sorted(LANGUAGES)),
     order=st.permutations(range(4)),
@@ -493,8 +501,7 @@ def test_files_have_a_bound(tmp_path, monkeypatch):
     refused(tmp_path, "t [s],E [Pa]\n" + "1,5\n" * 30, "smaller file")
 
 
-@settings(max_examples=300, deadline=None, derandomize=True,
-          suppress_health_check=[HealthCheck.function_scoped_fixture])  # fmt: skip
+@examples(300)
 @given(
     st.binary(max_size=200)
     | st.text(alphabet="tfE'GvT,;\t \n[]()#0123456789.-eHzPaMC\"", max_size=120)

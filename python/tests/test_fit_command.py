@@ -6,7 +6,7 @@ import re
 import f90nml
 import numpy as np
 import pytest
-from conftest import PAPER, ROOT
+from conftest import PAPER, ROOT, long_tests
 
 SUCCESS, USAGE, INPUT, FILE, NUMERICAL = 0, 2, 3, 4, 5
 POWER_LAW = PAPER / "butyl_power_law.nml"
@@ -151,7 +151,7 @@ def test_modulus_the_wrong_way(vcor, text):
     vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv", says="does not fall with time")
 
 
-@pytest.mark.parametrize("seed", [9, 10, 11, 13, 123, 159])
+@pytest.mark.parametrize("seed", [9, 123, *long_tests(10, 11, 13, 159)])
 def test_as_many_terms_as_there_are(vcor, seed):
     """In spite of noise: a step of the search that stops short must not end it. With these seeds it
     was ended by three terms."""
@@ -302,7 +302,7 @@ def noisy(modulus, noise, seed):
     return modulus * np.exp(noise * np.random.default_rng(seed).standard_normal(modulus.size))
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1, *long_tests(2, 3)])
 @pytest.mark.parametrize("model", ["sls", "prony"])
 def test_noise_is_noise(vcor, model, seed):
     """10 % of noise on the right model is not reported as a wrong model."""

@@ -47,7 +47,7 @@ def test_no_message_of_a_function_names_an_option():
             continue
         for one in ast.walk(node):
             if isinstance(one, ast.Constant) and isinstance(one.value, str) and (
-                id(one) not in documentation(node) and re.search(r"(^|[^-\w])--[a-z]", one.value)
+                re.search(r"(^|[^-\w])--[a-z]", one.value) and id(one) not in documentation(node)
             ):  # fmt: skip
                 found.append(f"{path.name}: {name}: {one.value}")
     assert seen > 20

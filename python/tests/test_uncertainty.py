@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import PAPER, ROOT, SWEEPS
-from properties import given, settings, st
+from properties import examples, given, st
 from scipy.integrate import solve_ivp
 
 import vcor
@@ -240,7 +240,7 @@ def places(document, path=()):
         yield from places(one, (*path, key))
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(st.data())
 def test_a_damaged_fit_is_a_line(sls, tmp_path, data):
     """Whatever stands in a place of the document: a spread, or an error of the input, or a
@@ -420,7 +420,7 @@ def test_a_list_is_varied_term_by_term():
 def test_any_thickness_and_what_has_no_parts(sls):
     """With waves = 'body' the loss has no parts, and what states no error has none."""
     sls["plate.waves"], sls["rubber.poisson_ratio"] = "body", 0.48
-    found = vcor.propagate(sls, {"rubber.beta": 0.05, "impact.velocity": 0.02}, samples=32)
+    found = vcor.propagate(sls, {"rubber.beta": 0.05, "impact.velocity": 0.02}, samples=8)
     assert "energy_loss" in found.table.quantity and "wave_energy" not in found.table.quantity
     assert np.isfinite(found.table.elasticity).all()
     for name in ("cor", "contact_time", "max_force"):
@@ -521,6 +521,7 @@ def test_bands_are_those_of_each_impact(swept):
     assert table.validity.item() == wanted.validity == swept.run().validity.values[1]
 
 
+@pytest.mark.usefixtures("no_figures")
 def test_a_long_computation_is_announced(swept, tmp_path, capsys, monkeypatch):
     """How many impacts it solves and about how long that takes, before it begins, and with
     PYTHONWARNINGS = ignore too."""

@@ -8,36 +8,35 @@ module vcor_c_api
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
       c_loc, c_null_char, c_null_ptr, c_ptr
-   use vcor_c_api_handle, only : build, build_own, build_points, find_places, handle_t, open_case, &
-      open_points
-   use vcor_c_api_values, only : array_at, c_column_t, c_numbers, c_text, demand, new_column, &
-      put_column, put_copy, put_count, put_error, put_pointer, put_text, refuse_long, report_error
-   use vcor_case_checks, only : implausible_numbers, note_length, validate
-   use vcor_case_entries, only : address_t, operator(==)
+   use vcor_c_api_handle, only : build, build_points, check_counts, copy_points, find_places, &
+      handle_t, open_case, open_points
+   use vcor_c_api_impact, only : find_columns, open_columns, refuse, solve_one, take_columns
+   use vcor_c_api_values, only : c_column_t, c_numbers, demand, new_column, put_column, put_copy, &
+      put_count, put_error, put_pointer, put_text, refuse_long, report_error
+   use vcor_case_checks, only : validate
+   use vcor_case_entries, only : address_t
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : problem_t
-   use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
+   use vcor_error, only : error_t
    use vcor_impact_history, only : history
    use vcor_impact_bounces, only : bounces_t
    use vcor_impact_outcome, only : bounces_of, outcome_t
    use vcor_impact_trajectory, only : history_steps
    use vcor_impact_validity, only : surroundings_t
-   use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_solver, only : settle
-   use vcor_sweep_points, only : default_threads, failures_t, most_threads, solve_point, &
-      solve_points, sweep_t, worker_t
+   use vcor_sweep_points, only : default_threads, failures_t, solve_point, solve_points, sweep_t, &
+      worker_t
    use vcor_sweep_quantity, only : bounce_quantities, bounce_values, history_quantities, &
-      new_summary, point_invalid, quantities, quantity_names, quantity_place, quantity_t, summary_t
-   use vcor_text, only : integer_text, shortened
+      new_summary, quantities, quantity_place, quantity_t, summary_t
+   use vcor_text, only : integer_text
    use vcor_verify_agreement, only : compared_names
    use vcor_version, only : version
-   use vcor_words, only : suggestion
    implicit none
    private
 
    public :: vcor_library_version, vcor_column_of, vcor_axis, vcor_settle, vcor_solve, &
-      vcor_warnings, vcor_history, vcor_bounces
+      vcor_history, vcor_bounces
 
    !> Tables for `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2, &
@@ -196,104 +195,90 @@ contains
       type(error_t), allocatable :: trouble
       type(c_ptr), pointer :: addresses(:), columns(:)
       real(c_double), pointer :: values(:, :), results(:, :)
+      type(address_t), allocatable :: points(:)
+      integer, allocatable :: places(:)
       character(len=:), allocatable :: remark
-      integer :: i
+      type(outcome_t) :: outcome
 
       call open_case(self, handle, trouble)
       call check_counts(int(m), int(n), int(k), int(threads), trouble)
       call open_points(m, address_list, n, value_table, addresses, values, trouble)
-      if (k > 0) call demand(column_list, 'columns', trouble)
-      if (k > 0 .and. n > 0) call demand(result_table, 'results', trouble)
+      call open_columns(k, column_list, n, result_table, columns, results, trouble)
       if (.not. allocated(trouble)) then
-         call c_f_pointer(array_at(column_list, k), columns, [k])
-         do i = 1, k
-            call demand(columns(i), 'columns[i]', trouble)
-         end do
+         results = ieee_value(1.0_wp, ieee_quiet_nan)
+!$omp critical (vcor_c_api)
+         call find_columns(columns, places, trouble)
+         if (.not. allocated(trouble) .and. n > 0) &
+            call find_places(handle%case, addresses, points, trouble)
+!$omp end critical (vcor_c_api)
       end if
-      if (.not. allocated(trouble)) then
-         call c_f_pointer(array_at(result_table, min(k, n)), results, [k, n])
-         call solve_table(handle, addresses, values, columns, int(threads), results, remark, &
-            trouble)
+      if (.not. allocated(trouble) .and. n == 1) then
+         call solve_one(handle, addresses, points, values, outcome, remark, trouble)
+         if (.not. allocated(trouble)) call take_columns(outcome, places, results(:, 1))
+      else if (.not. allocated(trouble) .and. n > 1) then
+         call solve_table(handle, addresses, points, values, places, int(threads), results, &
+            remark, trouble)
+      end if
+      if (.not. allocated(trouble) .and. allocated(remark)) then
+!$omp critical (vcor_c_api)
+         if (m == 0) then
+            call refuse(handle, outcome, remark, trouble)
+         else if (n == 1) then
+            remark = '1 of 1 points have no result, the first is point 1: '//remark
+         end if
+!$omp end critical (vcor_c_api)
       end if
       code = report_error(trouble, error)
-      if (allocated(remark)) call put_error(error, code, remark)
+      if (.not. allocated(trouble) .and. allocated(remark)) call put_error(error, code, remark)
    end function vcor_solve
 
    !> Solve the points of a table
-   subroutine solve_table(handle, addresses, values, columns, threads, results, remark, error)
+   subroutine solve_table(handle, addresses, points, values, places, threads, results, remark, &
+                          error)
       type(handle_t), intent(inout) :: handle
-      !> Addresses with values for each point, shape (m)
+      !> Addresses with values for each point as the caller has them, shape (m)
       type(c_ptr), intent(in) :: addresses(:)
+      !> The addresses, shape (m)
+      type(address_t), intent(in) :: points(:)
       !> Values, shape (m, n)
       real(wp), intent(in) :: values(:, :)
-      !> Names of columns of the summary, shape (k)
-      type(c_ptr), intent(in) :: columns(:)
+      !> Places of columns of the summary, shape (k)
+      integer, intent(in) :: places(:)
       !> Number of threads, 0: the default
       integer, intent(in) :: threads
       !> Values of the columns, shape (k, n); NaN where there is none
-      real(wp), intent(out) :: results(:, :)
+      real(wp), intent(inout) :: results(:, :)
       !> How many points have no result and why; unallocated if all have one
       character(len=:), allocatable, intent(out) :: remark
-      !> Error of a case without addresses that has no result, or of the case itself; unallocated on
-      !> success
+      !> Error of the case, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(sweep_t) :: sweep
       type(summary_t) :: summary
       type(failures_t) :: failures
       type(surroundings_t) :: learned
-      type(address_t), allocatable :: points(:)
-      type(address_t) :: none(0)
-      integer, allocatable :: places(:)
+      real(wp), allocatable :: numbers(:, :)
       integer(c_int) :: current
-      integer :: n, team, i
-      logical :: is_own
+      integer :: team, i
 
-      n = size(results, 2)
-      results = ieee_value(1.0_wp, ieee_quiet_nan)
-      allocate (places(size(columns)))
 !$omp critical (vcor_c_api)
       team = max(1, threads)
       if (threads == 0) team = default_threads()
       ! a child of fork does not have the threads of its parent
       current = getpid()
       if (process /= 0 .and. process /= current) team = 1
-      if (process == 0 .and. team > 1 .and. n > 1) process = current
-      call new_summary(summary, n, error, team)
-      do i = 1, size(columns)
-         if (allocated(error)) exit
-         places(i) = findloc(summary%quantities%name == fortran(columns(i)), .true., dim=1)
-         if (places(i) == 0) call raise(error, error_usage, "unknown name '" &
-            //shortened(fortran(columns(i)))//"'; " &
-            //suggestion(fortran(columns(i)), quantity_names()))
-      end do
-      is_own = .false.
-      if (.not. allocated(error) .and. n > 0) then
-         if (size(addresses) == 0) then
-            call build_own(handle, sweep, is_own, error)
-         else
-            call find_places(handle%case, addresses, points, error)
-            if (.not. allocated(error)) &
-               call build_points(handle, points, values, sweep, error, addresses)
-         end if
-      end if
+      if (process == 0 .and. team > 1) process = current
+      call new_summary(summary, size(results, 2), error, team)
+      if (.not. allocated(error)) &
+         call build_points(handle, addresses, points, values, numbers, error)
+      if (.not. allocated(error)) call copy_points(handle, numbers, sweep)
 !$omp end critical (vcor_c_api)
-      if (allocated(error) .or. n == 0) return
+      if (allocated(error)) return
       call solve_points(sweep, team, summary, failures, error, learned=learned)
 !$omp critical (vcor_c_api)
       call handle%sweep%problem%surroundings%learn_from(learned)
 !$omp end critical (vcor_c_api)
-      if (is_own .and. failures%count > 0) then
-         ! the case as it is has the place of each value in its message
-!$omp critical (vcor_c_api)
-         call new_summary(summary, n, error, team)
-         if (.not. allocated(error)) call build_points(handle, none, values, sweep, error)
-!$omp end critical (vcor_c_api)
-         if (allocated(error)) return
-         failures = failures_t()
-         call solve_points(sweep, team, summary, failures, error)
-      end if
-      do i = 1, size(columns)
+      do i = 1, size(places)
          if (places(i) > size(summary%values)) then
             results(i, :) = real(summary%status, wp)
          else if (allocated(summary%values(places(i))%reals)) then
@@ -304,126 +289,11 @@ contains
       end do
       if (failures%count == 0) return
 !$omp critical (vcor_c_api)
-      if (size(addresses) == 0) then
-         call raise(error, &
-            merge(error_input, error_numerical, summary%status(1) == point_invalid), &
-            handle%case%source//': '//failures%kind(1)%message)
-      else
-         remark = integer_text(failures%count)//' of '//integer_text(n) &
-            //' points have no result, the first is point ' &
-            //integer_text(failures%kind(1)%first)//': '//failures%kind(1)%message
-      end if
+      remark = integer_text(failures%count)//' of '//integer_text(size(results, 2)) &
+         //' points have no result, the first is point ' &
+         //integer_text(failures%kind(1)%first)//': '//failures%kind(1)%message
 !$omp end critical (vcor_c_api)
    end subroutine solve_table
-
-   !> Get the numbers that look like those in another unit
-   function vcor_warnings(self, m, address_list, n, value_table, text, error) bind(c) result(code)
-      type(c_ptr), value :: self
-      integer(c_int), value :: m
-      type(c_ptr), value :: address_list
-      integer(c_int), value :: n
-      type(c_ptr), value :: value_table, text, error
-      integer(c_int) :: code
-
-      type(handle_t), pointer :: handle
-      type(error_t), allocatable :: trouble
-      type(c_ptr), pointer :: addresses(:)
-      real(c_double), pointer :: values(:, :)
-      character(len=note_length), allocatable :: notes(:)
-      character(len=:), allocatable :: lines
-      integer :: i
-
-      call put_pointer(text, c_null_ptr)
-      call open_case(self, handle, trouble)
-      call check_counts(int(m), min(int(n), 1), 0, 0, trouble)
-      call open_points(m, address_list, n, value_table, addresses, values, trouble)
-      call demand(text, 'text', trouble)
-      if (.not. allocated(trouble) .and. (m == 0 .or. n > 0)) then
-!$omp critical (vcor_c_api)
-         call look(handle, addresses, values, notes, trouble)
-         if (.not. allocated(trouble) .and. size(notes) > 0) then
-            lines = trim(notes(1))
-            do i = 2, size(notes)
-               lines = lines//new_line('a')//trim(notes(i))
-            end do
-            call put_copy(text, c_text(lines), trouble)
-         end if
-!$omp end critical (vcor_c_api)
-      end if
-      code = report_error(trouble, error)
-   end function vcor_warnings
-
-   !> Look at the numbers of a case and its points, at those of a single point only if the case or
-   !> the addresses have changed
-   subroutine look(handle, addresses, values, notes, error)
-      type(handle_t), intent(inout) :: handle
-      !> Addresses with values for each point, shape (m)
-      type(c_ptr), intent(in) :: addresses(:)
-      !> Values, shape (m, n)
-      real(wp), intent(in) :: values(:, :)
-      !> Notes on numbers that were not handed over before, shape (notes)
-      character(len=note_length), allocatable, intent(out) :: notes(:)
-      !> Error of the case, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(sweep_t) :: sweep
-      type(address_t), allocatable :: places(:)
-      character(len=note_length), allocatable :: found(:)
-      character(len=note_length) :: flaw
-      integer :: i
-      logical :: is_own
-
-      allocate (notes(0))
-      call find_places(handle%case, addresses, places, error)
-      if (allocated(error)) return
-      if (size(places) == 0 .and. allocated(handle%tuned)) places = handle%tuned
-      if (size(values, 2) <= 1) then
-         if (allocated(handle%looked_at)) then
-            if (size(handle%looked_at) == size(places)) then
-               if (all(handle%looked_at == places)) return
-            end if
-         end if
-      end if
-      if (size(addresses) == 0) then
-         call build_own(handle, sweep, is_own, error)
-      else
-         call build_points(handle, places, values, sweep, error, addresses)
-      end if
-      if (allocated(error)) return
-      if (size(values, 2) <= 1) handle%looked_at = places
-      call implausible_numbers(sweep%case, sweep%grid, found)
-      if (.not. allocated(handle%reported)) allocate (handle%reported(0))
-      do i = 1, size(found)
-         ! what is wrong with a value, wherever it stands
-         flaw = found(i)
-         flaw = flaw(index(trim(flaw(:index(flaw, ' = ') - 1)), ' ', back=.true.) + 1:)
-         if (any(handle%reported == flaw)) cycle
-         handle%reported = [handle%reported, flaw]
-         notes = [notes, found(i)]
-      end do
-   end subroutine look
-
-   !> Check the numbers of a call of `vcor_solve`
-   subroutine check_counts(m, n, k, threads, error)
-      !> Numbers of addresses, points, columns and threads
-      integer, intent(in) :: m, n, k, threads
-      !> An earlier error, which is kept, or one of code `error_usage`; unallocated on success
-      type(error_t), allocatable, intent(inout) :: error
-
-      if (allocated(error)) return
-      if (min(m, n, k) < 0) then
-         call raise(error, error_usage, &
-            'found a negative number of addresses, points or columns')
-      else if (m == 0 .and. n > 1) then
-         call raise(error, error_usage, 'found several points without an address, expected one')
-      else if (threads < 0 .or. threads > most_threads) then
-!$omp critical (vcor_c_api)
-         call raise(error, error_usage, 'found '//integer_text(threads) &
-            //' threads, expected 1 to '//integer_text(most_threads) &
-            //', or 0 for as many as there are cores')
-!$omp end critical (vcor_c_api)
-      end if
-   end subroutine check_counts
 
    !> Compute the history of a single impact
    function vcor_history(self, rows, values, error) bind(c) result(code)

@@ -14,15 +14,16 @@ module vcor_number
    public :: interval_t, contains_number, is_within, is_computable, interval_text
    public :: positive, not_negative, between_0_and_1
    public :: spaced, log_spacing
+   public :: most_magnitude, least_magnitude
    public :: read_real, looks_numeric, real_text, identity_of
 
    !> Largest magnitude that is accepted on input
    real(wp), parameter :: largest = 1.0e300_wp
    !> Smallest nonzero magnitude that is accepted on input
    real(wp), parameter :: smallest = 1.0e-300_wp
-   !> Magnitudes of the numbers of a case: nothing physical is beyond, and products of several are
+   !> Magnitudes of the numbers of a case: nothing physical is beyond, and products of five are
    !> finite
-   real(wp), parameter :: most = 1.0e60_wp, least = 1.0e-60_wp
+   real(wp), parameter :: most_magnitude = 1.0e60_wp, least_magnitude = 1.0e-60_wp
 
    !> Spacing with equal steps of the logarithm; any other word means equal steps of the value
    character(len=*), parameter :: log_spacing = 'log'
@@ -111,7 +112,8 @@ contains
       real(wp), intent(in) :: number
       logical :: yes
 
-      yes = abs(number) <= most .and. (abs(number) >= least .or. .not. abs(number) > 0.0_wp)
+      yes = abs(number) <= most_magnitude &
+         .and. (abs(number) >= least_magnitude .or. .not. abs(number) > 0.0_wp)
    end function is_computable
 
    !> A range as text: `> 0`, `in (-1, 0.5]`; empty without bounds

@@ -31,8 +31,11 @@ module vcor_solver
       type(coupled_t), allocatable :: coupled
       !> First method for all others
       type(ive_t) :: ive
-      !> Method if the first has no result, or one far from the requested accuracy
+      !> Method for what internal variables do not solve, with the time step of the settings
       type(product_t) :: product
+      !> Method if the first has no result, or one far from the requested accuracy; it chooses its
+      !> steps, since a time step is for the method in use
+      type(product_t) :: fallback
    contains
       procedure :: solve => solve_by_what_works
    end type auto_t
@@ -72,12 +75,13 @@ contains
       if (method == coupled .and. .not. impact%face%is_built()) then
          call raise(error, error_input, "method = 'coupled' needs the face of the impact: " &
             //'new_face builds it', 'method')
-      else if (settings%bounces > 1 .and. .not. impact%gravity > 0.0_wp) then
-         call raise(error, error_input, 'the sphere comes back under its weight only: expected ' &
-            //'gravity > 0, or bounces = 1', 'bounces gravity')
       else
          call refuse_features(has, error)
       end if
+      ! what no weight helps is refused first
+      if (.not. allocated(error) .and. settings%bounces > 1 .and. .not. impact%gravity > 0.0_wp) &
+         call raise(error, error_input, 'the sphere comes back under its weight only: expected ' &
+         //'gravity > 0, or bounces = 1', 'bounces gravity')
    end subroutine check_settings
 
    !> Check the numbers among the settings
@@ -194,10 +198,10 @@ contains
          call new_ive(auto%ive, first, error)
          if (allocated(error)) return
          auto%settings = settings
-         ! the time step belongs to a method that the user has not requested
+         call new_product(auto%product, settings)
          fallback = settings
          fallback%time_step = 0.0_wp
-         call new_product(auto%product, fallback)
+         call new_product(auto%fallback, fallback)
          allocate (auto%coupled)
          call new_coupled(auto%coupled, settings)
          call move_alloc(auto, solver)
@@ -244,14 +248,14 @@ contains
                .or. .not. (trajectory%misses_by_far() .or. trajectory%returns)) then
          return
       end if
-      call self%product%solve(impact, trajectory, error)
+      call self%fallback%solve(impact, trajectory, error)
       if (.not. allocated(failure)) return
       if (allocated(error)) return
       ! running out of steps says nothing about a contact without a given end; on a structure the
       ! time has run out
       if (trajectory%status == contact_lasting .and. &
           .not. impact%target%structure%exists() .and. &
-          .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)
+          .not. self%fallback%settings%end_time > 0.0_wp) call move_alloc(failure, error)
    end subroutine solve_by_what_works
 
 end module vcor_solver

@@ -7,6 +7,12 @@ module vcor_tuning
    implicit none
    public
 
+   ! Iterations that end when a correction is rounding
+
+   !> Their bound, for numbers that are not finite: Newton's method takes a dozen, the bisection
+   !> that safeguards it some sixty
+   integer, parameter :: most_iterations = 200
+
    ! Sums of exponentials for continuous spectra
 
    !> Power of the accuracy by which the rule for a spectrum with features at unknown rates is made

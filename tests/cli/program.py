@@ -14,6 +14,19 @@ PENDULUM = ROOT / "examples" / "identification" / "pendulum.nml"
 EXAMPLES = sorted(set((ROOT / "examples").glob("**/*.nml")) - {*SWEEPS, *MATERIALS, PENDULUM})
 PAPER = ROOT / "examples" / "paper"
 
+EVERYTHING = "VCOR_ALL_TESTS" in os.environ
+
+
+def long_tests(*cases):
+    """Cases that prove once more what others of the same test prove: of the long tests only."""
+    return list(cases) if EVERYTHING else []
+
+
+# Examples of each model, shape, plate, structure and method, and of data; in the long tests all of them
+KINDS = """ball_on_anvil block butyl_cerf butyl_power_law_ghost butyl_prony_frozen coating_on_steel cone_into_gel
+fractional_zener granular_pair pad_on_beam sls_exact sls_printed steel_on_measured_rubber superball""".split()
+ONE_OF_EACH = [path for path in EXAMPLES if EVERYTHING or path.stem in KINDS]
+
 # Exit codes
 SUCCESS, USAGE, INPUT, FILE, NUMERICAL = 0, 2, 3, 4, 5
 

@@ -1,6 +1,7 @@
 """Bounces under the weight: each against independent solutions, refusals, files, how they end."""
 
 import json
+import re
 
 import h5py
 import numpy as np
@@ -183,6 +184,31 @@ def test_receding_contact_and_pads(vcor):
             "--set", f"contact.law={name}",
         )
         assert float(alone) == pytest.approx(cor, abs=3e-7)
+
+
+@pytest.mark.parametrize("elastic", [True, False])
+def test_pairs_whose_dent_is_not_followed(vcor, elastic):
+    """What the line advises has a result."""
+    known = {**KNOWN["sls"], "bounces": 2}
+    ball = "model = 'prony', equilibrium_modulus = 1e8, moduli = 1e8, times = 1e-4"
+    if elastic:
+        ball = "model = 'elastic', modulus = 1e8"
+    text = re.sub("name = 'ball', model = 'rigid'", f"name = 'ball', poisson_ratio = 0.4, {ball}", case(known))
+    assert ball in text
+    vcor.write(text.replace("pair = 'series'", ""))
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and "or contact.pair = 'series' of materials that are sums" in done.err
+    vcor.succeeds("run", "case.nml", "--print", "cor", "--set", "contact.pair=series")
+
+
+def test_the_method_is_refused_before_the_weight(vcor):
+    """A weight, which the paper's scheme would refuse, is not asked for where nothing would bounce."""
+    vcor.write(re.sub("gravity = [^,]*, bounces = [0-9]+", "bounces = 3", case(KNOWN["sls"])))
+    paper = ["--set", "solver.method=direct", "--set", "solver.scheme=adams_bashforth"]
+    done = vcor("check", "case.nml", *paper)
+    assert done.code == INPUT and "scheme = 'product'" in done.err
+    done = vcor("check", "case.nml")
+    assert done.code == INPUT and "expected gravity > 0" in done.err
 
 
 def test_too_many_steps(vcor):

@@ -1,17 +1,20 @@
 """The examples, and the namelists that f90nml makes of them."""
 
+import csv
 import functools
 import re
 
 import f90nml
 import pytest
 from cases import SLS, case_text
-from program import EXAMPLES, NUMERICAL, PAPER, Vcor
+from program import EXAMPLES, KINDS, NUMERICAL, ONE_OF_EACH, PAPER, Vcor
 
 # Examples with the paper's scheme are there to show its error
 CONVERGED = {path for path in EXAMPLES if "adams_bashforth" not in path.read_text()}
 pytestmark = pytest.mark.usefixtures("data_files")
 EACH = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+# These are solved once more, to the same numbers. All examples run, and are checked in all forms
+SOME = pytest.mark.parametrize("path", ONE_OF_EACH, ids=lambda path: path.stem)
 
 
 @functools.cache
@@ -35,7 +38,8 @@ def test_runs(vcor, path):
     assert files == {f"{stem}_summary.csv", f"{stem}.csv", f"{stem}.h5"} | bounces
     assert out.isascii() and "\t" not in out
     assert not any(line.endswith(" ") for line in out.splitlines())
-    numbers = numbers_of(path)
+    lines = (vcor.folder / "out" / f"{stem}_summary.csv").read_text().splitlines()
+    (numbers,) = csv.DictReader(line for line in lines if not line.startswith("#"))
     assert numbers["status"] == "separated"
     assert 0 < float(numbers["cor"]) < 1
     if path not in CONVERGED:
@@ -49,9 +53,13 @@ def test_runs(vcor, path):
     assert abs(float(numbers["energy_imbalance"])) <= 1e-6 * energy
 
 
+def test_the_kinds_are_there():
+    assert {path.stem for path in EXAMPLES} >= set(KINDS)
+
+
 def test_all_in_one_call(vcor):
-    out = vcor.succeeds("run", *EXAMPLES, "--print", "cor").splitlines()
-    assert out == [numbers_of(path)["cor"] for path in EXAMPLES]
+    out = vcor.succeeds("run", *ONE_OF_EACH, "--print", "cor").splitlines()
+    assert out == [numbers_of(path)["cor"] for path in ONE_OF_EACH]
 
 
 @EACH
@@ -87,20 +95,21 @@ def test_f90nml_round_trip(vcor, path):
     numbers."""
     names = [as_f90nml_writes(vcor, path, f"{form}.nml", **FORMS[form]) for form in FORMS]
     assert checked(vcor, *names) == len(FORMS) * checked(vcor, path)
-    assert vcor.numbers(names[0]) == numbers_of(path)
+    if path in ONE_OF_EACH:
+        assert vcor.numbers(names[0]) == numbers_of(path)
 
 
-@EACH
+@SOME
 def test_f90nml_reads_what_check_prints(vcor, path):
     vcor.write(vcor.succeeds("check", path), "checked.nml")
     name = as_f90nml_writes(vcor, vcor.folder / "checked.nml", "written.nml")
     assert vcor.numbers(name) == numbers_of(path)
 
 
-@EACH
+@SOME
 def test_f90nml_reads_the_case_in_the_results(vcor, path):
     """The remarks at the top of a CSV file hold the case as it was run."""
-    vcor.succeeds("run", path)
+    vcor.succeeds("run", path, "--quiet")
     lines = (vcor.folder / f"{path.stem}_summary.csv").read_text().splitlines()
     start = lines.index("# case:") + 1
     text = "\n".join(line[2:] for line in lines[start:] if line.startswith("#"))

@@ -2,7 +2,7 @@
 
 import pytest
 from cases import SLS, case_text, edit
-from program import INPUT, NUMERICAL, PAPER, ROOT, SUCCESS
+from program import ALL, INPUT, NUMERICAL, PAPER, ROOT, SUCCESS
 
 # Round-off of numbers near 1 after some hundred steps
 ROUNDOFF = 1e-13
@@ -178,6 +178,40 @@ def test_nearly_a_fluid(vcor, beta):
             found[float(accuracy)] = float(done.out.split()[-1])
     best = found[min(found)]
     assert all(abs(cor - best) <= 1e-4 * accuracy for accuracy, cor in found.items())
+
+
+@pytest.mark.parametrize("only_direct", [
+    "plate.waves=frozen", "solver.volterra_order=2", "solver.continue_after_separation=true", "impact.bounces=2",
+])  # fmt: skip
+def test_auto_reads_what_the_method_in_use_reads(vcor, only_direct):
+    """Where auto is direct, a time step is that of the solution, as with method = 'direct'."""
+    still = ["plate.waves=none", "impact.gravity=9.81"] if "bounces" in only_direct else []
+    case = ["run", PAPER / "sls.nml", "--print", ALL]
+    case += [word for setting in (only_direct, *still) for word in ("--set", setting)]
+    step = ["--set", "solver.time_step=4e-5"]
+    found = vcor.succeeds(*case, *step)
+    assert found == vcor.succeeds(*case, *step, "--set", "solver.method=direct")
+    assert found != vcor.succeeds(*case)
+
+
+def test_advice_on_steps_is_for_who_takes_one(vcor):
+    """A table whose error is above the accuracy, on a structure: auto and direct choose their steps."""
+    rows = "time [s],relaxation_modulus [Pa]\n1e-7,4e7\n1e-6,25e6\n1e-5,16e6\n1e-4,12e6\n1e-2,6e6\n"
+    vcor.write(rows, "points.csv")
+    vcor.write("""&impact velocity = 3 /
+&sphere radius = 0.01, material = 'ball' /
+&plate material = 'pad' /
+&target body = 'block', mass = 0.3 /
+&material name = 'ball', model = 'rigid', density = 7800 /
+&material name = 'pad', model = 'table', file = 'points.csv', density = 1100, poisson_ratio = 0.5 /
+""")
+    for method in ("auto", "direct"):
+        done = vcor("run", "case.nml", "--set", f"solver.method={method}")
+        assert done.code == NUMERICAL and "give a larger solver.accuracy" in done.err
+        assert "time_step" not in done.err
+        vcor.succeeds("run", "case.nml", "--set", f"solver.method={method}", "--set", "solver.accuracy=1e-3")
+    step = ["--set", "solver.method=direct", "--set", "solver.time_step=1e-5", "--set", "solver.accuracy=1e-9"]
+    assert "or a shorter solver.time_step" in vcor("run", "case.nml", *step).err
 
 
 def test_step_without_effect(vcor):

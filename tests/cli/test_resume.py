@@ -1,5 +1,6 @@
 """Sweeps that are interrupted and go on."""
 
+import csv
 import os
 import pty
 import random
@@ -24,7 +25,7 @@ from long_sweep import (
     wait_for,
     write_long_sweep,
 )
-from program import FILE, NAMES, NUMERICAL, USAGE, Vcor, complaint, program
+from program import EVERYTHING, FILE, NAMES, NUMERICAL, USAGE, Vcor, complaint, long_tests, program
 
 
 @pytest.fixture(scope="module")
@@ -91,8 +92,7 @@ def untimed(text):
 
 
 def finish(vcor, *words):
-    """Resume; the screen is that of the undisturbed run, unless there is none with --quiet. With it exact mechanics
-    are solved, which takes as long as the sweep."""
+    """Resume; the screen is that of the undisturbed run, unless there is none with --quiet."""
     done = vcor("run", "case.nml", "--output", "out", "--resume", *words)
     assert done.code == NUMERICAL
     if "--quiet" not in words:
@@ -101,7 +101,6 @@ def finish(vcor, *words):
     same_files(vcor.folder / "out", vcor.folder / "ref")
 
 
-EVERYTHING = "VCOR_ALL_TESTS" in os.environ
 KILLS = int(os.environ.get("VCOR_KILLS", "20" if EVERYTHING else "3"))
 
 
@@ -359,10 +358,13 @@ def test_two_at_once(long):
         finish(long, "--quiet")
 
 
-def test_at_work(long):
+def test_at_work(long, left):
     """A sweep that another run is at is not begun."""
-    process = begin(long, "--quiet")
-    wait_for(long.folder / "out" / PART, process)
+    before = done_in(left)
+    process = begin(long, "--resume", "--quiet")
+    while done_in(left) <= before:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
     process.send_signal(signal.SIGSTOP)
     os.waitid(os.P_PID, process.pid, os.WSTOPPED)
     long.refuses("run", "case.nml", "--output", "out", code=FILE, says=[f"out/{PART}", "--resume"])
@@ -390,7 +392,7 @@ SCRIPT = """
 
 
 # The first two end while the points are solved, the last one with the results
-@pytest.mark.parametrize("bytes_per_point", [10, 250, 600, 900] if EVERYTHING else [10, 600, 900])
+@pytest.mark.parametrize("bytes_per_point", [10, 600, 900, *long_tests(250)])
 def test_full_disk(long, bytes_per_point):
     points = (long.folder / "ref" / "case_summary.csv").read_text().count("\n")
     done = subprocess.run(
@@ -433,8 +435,9 @@ def on_terminal(vcor, *words):
     return found.decode()
 
 
-def test_progress(long):
-    text = on_terminal(long)
+def test_progress(vcor):
+    write_long_sweep(vcor, 1.0)
+    text = on_terminal(vcor)
     assert text.count("\n") == 1  # that of the error
     lines = text.split("\r")
     shown = [line for line in lines if "points, " in line and "left" in line]
@@ -455,7 +458,12 @@ def test_a_log_is_told_once(vcor):
     process.send_signal(signal.SIGINT)
     assert process.communicate() == ("", "")
     process = begin(vcor, "--quiet", folder="quiet")
-    time.sleep(2.0)
+    # the line would come with the file of points
+    part = vcor.folder / "quiet" / PART
+    wait_for(part, process)
+    first = done_in(part)
+    while done_in(part) <= first:
+        time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     assert process.communicate() == ("", "")
 
@@ -465,18 +473,26 @@ def test_no_progress(short, solved):
     assert "\r" not in solved.reference.err
 
 
-def test_structures(vcor):
-    """Impacts with several contacts go on where they were; another list of modes is another case."""
-    modes = vcor.folder / "modes.csv"
-    modes.write_text("frequency [Hz],damping_ratio,modal_mass [kg]\n150.0,0.02,0.003\n900.0,0.02,0.003\n")
-    vcor.write(
+def struck_twice(count):
+    """A sweep over impacts of two contacts each."""
+    return (
         "&impact velocity = 1.0 /\n&sphere radius = 0.005, material = 'steel' /\n"
         "&plate material = 'steel' /\n&target body = 'modes', file = 'modes.csv' /\n"
         "&material name = 'steel', model = 'elastic', modulus = 210e9, poisson_ratio = 0.3,\n"
         "   density = 7850 /\n"
-        "&sweep parameter = 'impact.velocity', start = 0.5, stop = 2.0, count = 8 /\n"
+        f"&sweep parameter = 'impact.velocity', start = 0.5, stop = 2.0, count = {count} /\n"
     )
+
+
+def test_structures(vcor):
+    """Impacts with several contacts go on where they were; another list of modes is another case."""
+    modes = vcor.folder / "modes.csv"
+    modes.write_text("frequency [Hz],damping_ratio,modal_mass [kg]\n900.0,0.1,0.003\n")
+    write_long_sweep(vcor, 1.6, struck_twice)
     vcor("run", "case.nml", "--output", "ref", "--quiet")
+    rows = (vcor.folder / "ref" / "case_summary.csv").read_text().splitlines()
+    rows = csv.DictReader(row for row in rows if not row.startswith("#"))
+    assert {row["contacts"] for row in rows} == {"2"}
     interrupted(vcor)
     text = modes.read_text()
     modes.write_text(text.replace("900", "901"))

@@ -159,6 +159,7 @@ REFUSED = [
     ("mass", "plate.waves=constant", "plate is rigid"),
     ("mass", "plate.half_thickness=0.01", "plate is rigid"),
     ("mass", "sheet.density=900", "sphere.mass"),
+    ("fractional", "contact.mechanics=exact", "or have no effect"),
     ("half space", "plate.extent=0.01", "plate.waves = 'none'"),
     ("half space", "sheet.exponent=0.4", "neither the sphere nor the plate"),
     ("half space", "sheet.valid_from=1e-3", "neither the sphere nor the plate"),

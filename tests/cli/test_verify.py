@@ -4,7 +4,7 @@ import re
 
 import pytest
 from cases import MODELS, SLS, case_text, edit
-from program import EXAMPLES, FILE, INPUT, NUMERICAL, PAPER, ROOT, SUCCESS, USAGE, complaint
+from program import FILE, INPUT, NUMERICAL, ONE_OF_EACH, PAPER, ROOT, SUCCESS, USAGE, complaint, long_tests
 
 # Laws that the table must have, by a word of their rows, and their methods
 LAWS = {
@@ -170,7 +170,7 @@ def test_settings_need_a_case(vcor, words):
 # ---------------------------------------------------------------------------------------- cases
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", ONE_OF_EACH, ids=lambda path: path.stem)
 def test_examples(vcor, path):
     """Every example is verified, whatever its method, plate, materials and ghost lines."""
     out = vcor.succeeds("verify", path)
@@ -198,7 +198,7 @@ def test_solutions_of_a_case(vcor):
     assert {line[-1] for line in found} == {"honest"}
 
 
-@pytest.mark.parametrize("accuracy, refined", [("1e-4", 1e-6), ("1e-10", 1e-11), ("1e-11", 1e-11)])
+@pytest.mark.parametrize("accuracy, refined", [("1e-4", 1e-6), ("1e-11", 1e-11), *long_tests(("1e-10", 1e-11))])
 def test_accuracy_of_the_case(vcor, accuracy, refined):
     vcor.write(SLS)
     out = vcor.succeeds("verify", "case.nml", "--set", f"solver.accuracy={accuracy}")

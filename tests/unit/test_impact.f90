@@ -567,7 +567,7 @@ contains
          *sqrt(3.0_wp*1100.0_wp*0.75_wp/15.0e6_wp)/(16.0_wp*1100.0_wp*0.02_wp**2), &
          rounding, "Zener's lambda = alpha(0) m/T")
       call check_close(impact%inelasticity(), 0.138_wp, 1.0e-4_wp, "the paper's is 0.1380")
-      call check(impact%patience(impact%time_scale()) > 100.0_wp*scale, "a contact may last")
+      call check(impact%lasting_time(impact%time_scale()) > 100.0_wp*scale, "a contact may last")
 
       call rigid_on_plate(power_law, waves_relaxing, 10.0_wp, impact)
       scale = impact%time_scale()
@@ -667,10 +667,10 @@ contains
 
       call build_fluid(0.0_wp, mass, fluid)
       call build_fluid(1.0e-3_wp, mass, solid)
-      call check(.not. fluid%springs_back(), "a fluid has no spring")
-      call check(solid%springs_back(), "a soft spring is one")
+      call check(.not. fluid%pushes_apart(), "a fluid has no spring")
+      call check(solid%pushes_apart(), "a soft spring is one")
       call build_fluid(1.0e-20_wp, mass, solid)
-      call check(.not. solid%springs_back(), "unless rounding hides it")
+      call check(.not. solid%pushes_apart(), "unless rounding hides it")
       call build_fluid(1.0e-3_wp, mass, solid)
 
       call trajectory%reserve(1)

@@ -66,7 +66,7 @@ program test_impacts
    call test_profile()
    call test_stated()
    call test_hidden_end()
-   call test_kick()
+   call test_missed_velocity()
    call test_few_panels()
    call test_receding_plates()
    call test_crude_growth()
@@ -171,10 +171,10 @@ contains
       call check_difference(abs(outcome%cor_sphere - by_direct), near, "the sphere after it")
    end subroutine test_hidden_end
 
-   !> Modes that are fast compared with the rebound make a kick at the largest indentation, which
-   !> both solutions of a panel miss alike
-   subroutine test_kick()
-      call check_against_finer("a kick at the largest indentation", &
+   !> Modes that are fast compared with the rebound change the force next to the largest
+   !> indentation by what both solutions of a panel miss alike
+   subroutine test_missed_velocity()
+      call check_against_finer("what both solutions miss at the turn", &
          "&impact velocity = 0.1715129628520746 /"//new_line("a") &
          //"&sphere radius = 0.05278166182244058, material = 'ball' /"//new_line("a") &
          //"&plate half_thickness = 0.06739849828586751, material = 'plate', " &
@@ -185,7 +185,7 @@ contains
          //"alpha = 123.40358513953035 /"//new_line("a") &
          //"&material name = 'ball', model = 'rigid', density = 7800 /"//new_line("a"), &
          [1.0e-10_wp, 1.0e-11_wp])
-   end subroutine test_kick
+   end subroutine test_missed_velocity
 
    !> What an impact differs by from the same at a higher accuracy is stated
    subroutine check_stated(name, asked, text)

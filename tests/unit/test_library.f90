@@ -33,6 +33,7 @@ program test_library
    call test_structures()
    call test_refusals()
    call test_case()
+   call test_inputs()
    call test_errors()
    call test_sweep()
    call finish()
@@ -375,6 +376,47 @@ contains
          == [contact_sticking, contact_lasting, contact_resting]), &
          "a ball on a foil does not come back")
    end subroutine test_case
+
+   !> A problem builds what differs: after the inputs of any other case it is that of its case alone
+   subroutine test_inputs()
+      character(len=*), parameter :: names(*) = [character(len=24) :: 'ball_on_anvil', &
+         'ball_on_wood_panel', 'coating_on_steel', 'cone_into_gel', 'granular_pair', &
+         'polyurea_ball_in_seat', 'rubber_pad_on_steel', 'steel_on_measured_rubber', &
+         'paper/sls', 'paper/butyl_prony_frozen', 'paper/butyl_power_law']
+      type(case_t) :: case
+      type(inputs_t) :: inputs(size(names))
+      type(outcome_t) :: alone(size(names)), found
+      type(problem_t) :: problem, one
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+      integer :: i, j, k, place
+
+      do i = 1, size(names)
+         call read_case(case, 'examples/'//trim(names(i))//'.nml', error)
+         if (.not. allocated(error)) call validate(case, error)
+         if (.not. allocated(error)) call read_data(case, error)
+         if (.not. allocated(error)) call problem_of_case(problem, case, error)
+         if (.not. allocated(error)) call problem%solve(trajectory, alone(i), error)
+         call success(error, trim(names(i))//" is solved alone")
+         inputs(i) = problem%inputs
+      end do
+      do i = 1, size(names)
+         do j = i, size(names)
+            do k = 0, 1
+               place = merge(i, j, k == 0)
+               call one%build(inputs(place), error)
+               if (.not. allocated(error)) call one%solve(trajectory, found, error)
+               call success(error, trim(names(place))//" is solved after another case")
+               associate (wanted => alone(place))
+                  call check_close([found%cor, found%max_force, found%contact_time, &
+                     found%hysteresis_energy, found%cor_error], [wanted%cor, wanted%max_force, &
+                     wanted%contact_time, wanted%hysteresis_energy, wanted%cor_error], 0.0_wp, &
+                     trim(names(place))//" is the same after another case")
+               end associate
+            end do
+         end do
+      end do
+   end subroutine test_inputs
 
    !> Each kind of error
    subroutine test_errors()

@@ -344,14 +344,14 @@ contains
       do i = -2, 6
          p = frequency*2.0_wp**i*exp((0.0_wp, 1.0_wp)*0.13_wp*real(i, wp))
          whole = sum(yield/(p**2 + 0.04_wp*w*p + w**2*(material%complex_modulus(p)/reference)))
-         parts = sum((vibration%yield + vibration%kick*(p + vibration%damping)) &
+         parts = sum((vibration%yield + vibration%jump*(p + vibration%damping)) &
             /(p**2 + vibration%damping*p + vibration%square)) &
             + sum(vibration%weight/(p + vibration%rate))
          worst = max(worst, abs(parts/whole - 1.0_wp))
       end do
       call check(worst <= merge(of_sum, of_parts, vibration%error > 0.0_wp), &
          name//": receptance by parts")
-      call check(sum(vibration%kick) <= 0.0_wp .and. all(vibration%damping >= 0.0_wp), &
+      call check(sum(vibration%jump) <= 0.0_wp .and. all(vibration%damping >= 0.0_wp), &
          name//": parts lose energy")
    end subroutine check_split
    !> Modes of undamped bodies that ring faster than panels follow: what they change is stated. A

@@ -9,14 +9,14 @@ import contextlib
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
-from ctypes import byref, c_int, c_void_p
-from typing import Any
+from ctypes import byref, c_double, c_void_p
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from ._library import DataRangeWarning, Error, Floats, ValidityWarning, call
+from ._library import DataRangeWarning, Error, Floats, UnitWarning, ValidityWarning, call
 
 #: A `Case`, whose module uses this one
 Case = Any
@@ -81,6 +81,97 @@ def validity_of(levels: ArrayLike, causes: ArrayLike) -> str:
     return ", ".join(parts) or ("good" if (level == "good").any() else "none")
 
 
+class Remarks(NamedTuple):
+    """What there is to say about an impact, in lines; empty if nothing."""
+
+    #: Numbers that look like those in another unit
+    units: str
+    #: A level of validity that is not good, with the name of the case
+    validity: str
+    #: What the data of the materials do not cover
+    beyond_data: str
+
+
+def solved(
+    case: Case,
+    point: Mapping[str, float],
+    names: Sequence[str],
+    is_judged: bool = True,
+    is_examined: bool = True,
+) -> tuple[list[float], Remarks, Error | None]:
+    """Solve one impact in one call of the library; nothing is warned of.
+
+    Parameters
+    ----------
+    case, point
+        The case, and values at some addresses; the case itself if there are none.
+    names
+        Columns of the summary.
+    is_judged, is_examined
+        Whether remarks on the validity and on the data are wanted; these may take two solutions.
+
+    Returns
+    -------
+    tuple
+        Numbers of the columns, the remarks, and the error of an impact without a result.
+    """
+    m, k, fault = len(point), len(names), None
+    numbers, units, validity, data = (c_double * k)(), c_void_p(), c_void_p(), c_void_p()
+    try:
+        call("vcor_impact", case._pointer, m, _library.texts(tuple(point)),
+             (c_double * m)(*point.values()), k, _library.texts(tuple(names)), numbers,
+             byref(units), byref(validity) if is_judged else None,
+             byref(data) if is_examined else None)  # fmt: skip
+    except Error as error:
+        fault = error
+    texts = (_library.take_text(one) or "" if one else "" for one in (units, validity, data))
+    return list(numbers), Remarks(*texts), fault
+
+
+def impact(
+    case: Case,
+    point: Mapping[str, float],
+    names: Sequence[str],
+    asked: Sequence[str] | None = (),
+    level: int = 3,
+) -> tuple[list[float], dict[str, str]]:
+    """Solve one impact; warn of what there is to say about it.
+
+    Parameters
+    ----------
+    case, point, names
+        As for `solved`.
+    asked, level
+        As for `about`.
+
+    Returns
+    -------
+    tuple
+        Numbers of the columns, and attributes as of `about`.
+    """
+    silent = _silent.get()
+    is_judged = ValidityWarning not in silent and not _asks(asked)
+    numbers, remarks, fault = solved(
+        case, point, [*names, *_JUDGED[:2]], is_judged, DataRangeWarning not in silent
+    )
+    for line in remarks.units.splitlines():
+        warnings.warn(line, UnitWarning, stacklevel=level)
+    if fault:
+        raise fault
+    columns = _library.columns(0)
+    word, cause = (
+        columns[name].value(one) for name, one in zip(_JUDGED[:2], numbers[-2:], strict=True)
+    )
+    said = {"validity": str(word) if word in _NO_REMARK else f"{word} ({cause})"}
+    if remarks.beyond_data:
+        said["beyond_data"] = remarks.beyond_data.strip("\n")
+    if remarks.validity:
+        warnings.warn(remarks.validity, ValidityWarning, stacklevel=level)
+    for line in remarks.beyond_data.splitlines():
+        warnings.warn(line, DataRangeWarning, stacklevel=level)
+    return numbers[:-2], said
+
+
 def about(
     case: Case,
     addresses: Sequence[str],
@@ -107,21 +198,14 @@ def about(
     dict
         Attributes: `validity`, and `beyond_data` where there is anything to say.
     """
-    columns = [_library.columns(0)[name] for name in _JUDGED[:2]]
-    if len(results) == 1:
-        # a loop asks for one point after another
-        level_of_point, cause = (
-            str(column.value(results[0, i - len(_JUDGED)])) for i, column in enumerate(columns)
-        )
-        is_plain = level_of_point in _NO_REMARK
-        said = {"validity": level_of_point if is_plain else f"{level_of_point} ({cause})"}
-    else:
-        said = {"validity": validity_of(*(column.values(results[:, i - len(_JUDGED)])
-                                          for i, column in enumerate(columns)))}  # fmt: skip
+    levels, causes = (
+        _library.columns(0)[name].values(results[:, i - len(_JUDGED)])
+        for i, name in enumerate(_JUDGED[:2])
+    )
+    said = {"validity": validity_of(levels, causes)}
     if lines := _beyond_data(case, addresses, table, *results[:, -3:].T):
         said["beyond_data"] = lines
-    is_known = "validity" in ([asked] if isinstance(asked, str) else asked or ())
-    is_known = is_known or said["validity"] in _NO_REMARK
+    is_known = _asks(asked) or said["validity"] in _NO_REMARK
     if not is_known and ValidityWarning not in _silent.get():
         warnings.warn(
             f"{case.name}: validity: {said['validity']}", ValidityWarning, stacklevel=level
@@ -131,11 +215,15 @@ def about(
     return said
 
 
+def _asks(asked: Sequence[str] | None) -> bool:
+    """Whether the validity is among the quantities that a caller has named."""
+    return "validity" in ([asked] if isinstance(asked, str) else asked or ())
+
+
 def about_history(case: Case) -> dict[str, str]:
     """Attributes of a history on the validity and coverage of its impact; warns of them."""
     with contextlib.suppress(Error):
-        found, _ = case._solve([], np.empty((1, 0)), _JUDGED, 1)
-        return about(case, [], np.empty((1, 0)), found, level=4)
+        return impact(case, {}, (), level=4)[1]
     # it sticks, or does not separate
     return {"validity": "none"}
 
@@ -152,10 +240,7 @@ def _beyond_data(
     # what nobody hears takes two solutions
     if DataRangeWarning in _silent.get():
         return ""
-    has, text = c_int(), c_void_p()
-    call("vcor_has_data", case._pointer, byref(has))
-    if not has:
-        return ""
+    text = c_void_p()
     with contextlib.suppress(Error):
         call("vcor_beyond_data", case._pointer, len(addresses),
              _library.texts(tuple(addresses)), len(table), np.ascontiguousarray(table),

@@ -93,6 +93,12 @@ class _ErrorStruct(Structure):
     _fields_ = [("code", c_int), ("message", c_char * 2048)]
 
 
+@functools.cache
+def words_of(labels: str) -> tuple[str, ...]:
+    """Words of a column, which loops ask for at each impact."""
+    return tuple(labels.split())
+
+
 class Column(NamedTuple):
     """A column of a table, or what an address is."""
 
@@ -116,13 +122,13 @@ class Column(NamedTuple):
     def value(self, number: float) -> float | str:
         """One value as it is shown."""
         if self.labels:
-            return self.labels.split()[int(number) - self.first]
+            return words_of(self.labels)[int(number) - self.first]
         return int(number) if self.is_whole else number
 
     def values(self, numbers: Floats) -> NDArray[Any]:
         """Values as they are shown: numbers, or the words that they stand for."""
         if self.labels:
-            words: NDArray[Any] = np.array(self.labels.split())[numbers.astype(int) - self.first]
+            words: NDArray[Any] = np.array(words_of(self.labels))[numbers.astype(int) - self.first]
             return words
         return numbers.astype(np.int64) if self.is_whole else numbers
 
@@ -183,8 +189,11 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_solve": [
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],
+    "vcor_impact": [
+        c_void_p, c_int, _texts, POINTER(c_double), c_int, _texts, POINTER(c_double),
+        POINTER(c_void_p), POINTER(c_void_p), POINTER(c_void_p),
+    ],
     "vcor_warnings": [c_void_p, c_int, _texts, c_int, _doubles, POINTER(c_void_p)],
-    "vcor_has_data": [c_void_p, POINTER(c_int)],
     "vcor_beyond_data": [
         c_void_p, c_int, _texts, c_int, _doubles, _doubles, _doubles, _doubles, POINTER(c_void_p),
     ],
@@ -239,8 +248,10 @@ class _Worker:
         self._jobs.put(job)
         while True:
             # a signal just before a wait does not end it
-            with contextlib.suppress(queue.Empty):
+            try:
                 return self._codes.get(timeout=_PATIENCE)
+            except queue.Empty:
+                pass
 
     def end(self) -> None:
         """End after the present call."""
@@ -276,7 +287,7 @@ os.register_at_fork(after_in_child=_forget_worker)
 #: Functions that end at once
 _QUICK = (
     "vcor_copy", "vcor_dump", "vcor_load", "vcor_name", "vcor_set", "vcor_unset", "vcor_get",
-    "vcor_describe", "vcor_catalogue", "vcor_has_data",
+    "vcor_describe", "vcor_catalogue",
 )  # fmt: skip
 #: Functions of a material, a microsecond a number at most, and for how many they end at once
 _MODULI = ("vcor_relaxation", "vcor_complex_modulus", "vcor_time_factors")
@@ -295,9 +306,8 @@ def call(name: str, *arguments: Any) -> str:
     quick = (
         name in _QUICK
         or (name in _MODULI and arguments[2] <= _FEW)
-        # one number or point, which a loop asks for again and again
+        # one number, which a loop asks for again and again
         or name == "vcor_time_factor"
-        or (name == "vcor_warnings" and arguments[3] == 1)
     )
     code = function() if quick and _worker else _interruptible(function)
     message: str = error.message.decode(errors="replace")

@@ -92,6 +92,7 @@ def document(**entries: Any) -> dict[str, Any]:
     """Results as they are written to JSON, which has no infinity: None in its place."""
 
     def plain(value: Any) -> Any:
+        """A value as JSON has it: lists for arrays, None for numbers that are not finite."""
         value = value.tolist() if hasattr(value, "tolist") else value
         if isinstance(value, Mapping):
             return {key: plain(one) for key, one in value.items()}

@@ -7,7 +7,7 @@ import math
 import os
 import time
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import byref, c_char_p, c_double, c_int, c_void_p
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -160,6 +160,9 @@ class Case:
 
     def add(self, materials: Case) -> None:
         """Complete the case by &material groups, whose data files stay where they are."""
+        if not isinstance(materials, Case):
+            raise UsageError(f"found {materials!r:.60}, expected a case of &material groups, as "
+                             "vcor.read makes it of a file")  # fmt: skip
         call("vcor_add_materials", self._pointer, materials._pointer)
 
     def __setitem__(self, address: str, value: ArrayLike) -> None:
@@ -246,17 +249,14 @@ class Case:
         axes = self._axes()
         if axes:
             return self.sweep(axes, threads=threads, progress=progress)
-        self._warn({})
         names = list(_library.columns(0))
-        columns, point = _coverage.with_judged(names), np.empty((1, 0))
         try:
-            values, _ = self._solve([], point, columns, 1)
-        except Error as error:
-            if isinstance(error, NumericalError):
-                error.result = self._without_result(names)
+            values, about = _coverage.impact(self, {}, names)
+        except NumericalError as error:
+            error.result = self._without_result(names)
             raise
-        made = self._dataset(names, values, {})
-        made.attrs |= _coverage.about(self, [], point, values)
+        made = self._dataset(names, np.array([values]), {})
+        made.attrs |= about
         exact = c_double()
         call("vcor_exact", self._pointer, byref(exact))
         made.attrs["exact_cor_sphere"] = exact.value
@@ -289,21 +289,12 @@ class Case:
         InputError
             The values make no impact.
         """
-        columns = _library.columns(0)
-        names, point = names_of(quantities), scalars(values)
-        row = np.array([[*point.values()]])
-        self._tell(point, row)
-        wanted = [*_coverage.with_judged(names), "status"]
-        found, remark = self._solve(list(point), row, wanted, 1)
-        if remark:
-            kind = InputError if found[0, -1] == INVALID else NumericalError
-            raise kind(f"{self.name}: {_reason(remark)}")
-        results = found[0].tolist()
+        columns, names = _library.columns(0), names_of(quantities)
+        numbers, about = _coverage.impact(self, scalars(values), names, quantities)
         made = _coverage.Numbers(
-            (name, columns[name].value(results[i])) for i, name in enumerate(names)
+            (name, columns[name].value(one)) for name, one in zip(names, numbers, strict=True)
         )
-        said = _coverage.about(self, list(point), row, found[:, :-1], quantities)
-        vars(made).update(said)
+        vars(made).update(about)
         return made
 
     def points(
@@ -523,23 +514,17 @@ class Case:
 
     def _warn(self, points: Mapping[str, ArrayLike]) -> None:
         """Warn of numbers of the case and of points that look like those in another unit."""
+        found = c_void_p()
         # what is wrong is refused by the solution
         with contextlib.suppress(Error):
             points = points or self._axes()
             columns = map(np.ravel, points.values())
             ends = [[end.reduce(one, initial=np.nan) for end in (np.fmin, np.fmax)]
                     for one in columns]  # fmt: skip
-            self._tell(points, np.reshape(ends, (-1, 2)).T, level=4)
-
-    def _tell(self, addresses: Iterable[str], values: Floats, level: int = 3) -> None:
-        """Warn of numbers of the case and of rows of values, each once, as the library knows."""
-        found, given = c_void_p(), tuple(addresses)
-        with contextlib.suppress(Error):
-            call("vcor_warnings", self._pointer, len(given), _library.texts(given), len(values),
-                 np.ascontiguousarray(values), byref(found))  # fmt: skip
-        if found:
-            for line in (_library.take_text(found) or "").splitlines():
-                warnings.warn(line, UnitWarning, stacklevel=level)
+            call("vcor_warnings", self._pointer, len(points), _library.texts(tuple(points)), 2,
+                 np.ascontiguousarray(np.reshape(ends, (-1, 2)).T), byref(found))  # fmt: skip
+        for line in (_library.take_text(found) or "").splitlines():
+            warnings.warn(line, UnitWarning, stacklevel=3)
 
     def _settled(self, addresses: Sequence[str], values: Floats) -> Case:
         """A copy with values, of which all is solved on the mesh that suits it, for differences."""

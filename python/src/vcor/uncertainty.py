@@ -59,7 +59,7 @@ INDICES = {"first": "S1", "first_error": "S1_conf", "total": "ST", "total_error"
 #: Columns of the impact itself that are reported beside the quantities
 JUDGED = ("validity", "validity_cause", "contact_time", "cor_error", "cor_sphere_error",
           "contact_time_error", "max_force_error")  # fmt: skip
-#: What the exact linear theory takes
+#: Settings of the exact linear theory
 EXACT = {"contact.law": "receding", "contact.pair": "series", "solver.method": "auto",
          "plate.waves": "body"}  # fmt: skip
 
@@ -116,6 +116,7 @@ class Spread:
             text = f"{100 * part}%"
 
         def spread(place: Callable[[Floats], Floats], *of_uniform: Any) -> Spread:
+            """A spread of one parameter by a distribution."""
             return cls(address, [address], place, np.ones_like, *of_uniform)
 
         made = None
@@ -174,6 +175,7 @@ class Spread:
         values, root = values[kept], vectors * np.sqrt(weights.clip(0))
 
         def end(elastic: Floats) -> Floats:
+            """Directions of one deviation for each quantity, shape (quantities, coordinates)."""
             # they move together, as they do where the quantity is off by one deviation
             pull: Floats = elastic @ root
             pull /= np.fmax(np.linalg.norm(pull, axis=1, keepdims=True), 1e-300)
@@ -197,7 +199,7 @@ def _check_deviation(case: Case, address: str, value: float, deviation: float, t
 
 @dataclass(frozen=True)
 class _Fit:
-    """What JSON of vcor fit or identify says of parameters: nothing of it is taken unchecked."""
+    """Parameters from JSON of vcor fit or identify: nothing of it is taken unchecked."""
 
     path: str
     #: Name of the material, empty if the addresses have it
@@ -256,7 +258,7 @@ class _Fit:
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """What is known of the results of an impact; `str` is the report of the command."""
+    """Results of an impact with their errors; `str` is the report of the command."""
 
     #: Over `quantity`: value, that of the exact mechanics, numerical, material and model error, nan
     #: if not known, percentiles, and correction, the error of a sample by corrected thin mechanics
@@ -271,7 +273,7 @@ class Uncertainty:
     #: Whether the model holds, and the column of the summary that decides
     validity: str
     validity_cause: str
-    #: What of the impact lies beyond the data of its materials, in words; empty if nothing does
+    #: Parts of the impact beyond the data of its materials, in words; empty if there are none
     beyond: str = ""
     #: Impacts that were solved with the mechanics of the case for the samples, all of them or those
     #: that a correction of thin mechanics was fitted to and tested with, and how many of these were
@@ -376,6 +378,7 @@ def sensitivities(
     middle: Floats = near._solve(parameters, values[None], quantities, 1)[0]
 
     def results(steps: Floats) -> Floats:
+        """Quantities, shape (points, quantities), for steps in logarithms from the middle."""
         if not steps.any():
             return middle
         return near._solve(parameters, values * np.exp(steps), quantities, threads)[0]
@@ -508,6 +511,7 @@ class Drawn:
                for one in spreads]  # fmt: skip
 
         def place(z: Floats) -> Floats:
+            """Values of all parameters, shape (samples, parameters), at standard coordinates."""
             parts = zip(spreads, own, strict=True)
             return np.hstack([one.place(z[:, part]) for one, part in parts])
 
@@ -525,7 +529,7 @@ class Drawn:
                    middle)  # fmt: skip
 
     def uncertainty(self, sampled: Sampled, i: int) -> Uncertainty:
-        """What is known of the results, by those of the samples of plan i."""
+        """Results with their errors, by those of the samples of plan i."""
         case, quantities, addresses = self.case, self.quantities, self.plan.addresses
         found, names = sampled.found[i], [spread.name for spread in self.spreads]
         good = np.isfinite(found).all(axis=1).reshape(-1, self.together)
@@ -626,7 +630,7 @@ class Drawn:
 
 
 def _beyond(case: Case, contact_time: float) -> str:
-    """What lies beyond the data of the materials: the temperature, or most of the contact."""
+    """Words for a temperature, or most of the contact, beyond the data of the materials."""
     said = []
     for name in dict.fromkeys(str(case[f"{body}.material"]) for body in ("sphere", "plate")):
         first, last, cold, warm = (
@@ -717,6 +721,7 @@ def _has_thickness(case: Case) -> bool:
 
 
 def _values(case: Case, quantities: list[str]) -> Floats:
+    """Quantities of an impact, shape (quantities,)."""
     with unwarned():
         return np.array(list(case.solve(quantities=quantities).values()), dtype=float)
 
@@ -729,6 +734,7 @@ def _accurate(case: Case | str | os.PathLike[str]) -> Case:
 
 
 def _number(case: Case, address: str) -> float:
+    """A number of a case; raises UsageError if it is 0 or none, as it has no relative change."""
     value = case[address]
     if not isinstance(value, (int, float)) or value == 0:
         raise UsageError(f"{address}: found {value}, expected a number other than 0")
@@ -760,6 +766,7 @@ def _by_name(values: xr.DataArray) -> Any:
 
 
 def _report(found: Uncertainty) -> str:
+    """The report of the command: errors, elasticities and shares of the variance."""
     table = found.table
     lines = [f"{'':26s}{'value':>13s}{'numerical':>11s}{'material':>11s}{'model':>11s}"
              f"  {'95 % of the samples':26s}"]  # fmt: skip

@@ -44,6 +44,7 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """Run the command `vcor uncertainty` on a case or a sweep; write report, figure and files."""
     vary: dict[str, str | float] = {}
     for word in options.vary:
         address, _, vary[address] = word.partition("=")

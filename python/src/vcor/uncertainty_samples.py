@@ -126,12 +126,14 @@ def sampled(
         solved = [_solve(plan, plan.z, quantities, threads) for plan in plans]
 
     def at(i: int, z: Floats) -> Floats:
+        """Results at further points of a plan, shape (points, quantities)."""
         return _solve(plans[i], z, quantities, threads)
 
     return Sampled(solved, at, count, notes=notes)
 
 
 def _solve(plan: Plan, z: Floats, quantities: Sequence[str], threads: int | None) -> Floats:
+    """Results at standard coordinates z of a plan, shape (points, quantities)."""
     return _solve_sorted(plan.case, plan.addresses, plan.place(z), quantities, threads)
 
 
@@ -173,6 +175,7 @@ def say(case: Case, impacts: int, seconds: float, why: str = "") -> None:
 
 
 def _cores(threads: int | None) -> int:
+    """Number of threads, by default one for each core that the process may use."""
     return threads_of(threads) or len(os.sched_getaffinity(0))
 
 
@@ -214,6 +217,7 @@ def _with_rigid_ball(case: Case) -> Case:
 
 
 def _reads(thin: Case, case: Case, address: str) -> bool:
+    """Whether thin mechanics of a case solve it with the number that it has at an address."""
     try:
         thin._solve([address], np.array([[number(case, address)]]), ["cor"], 1)
     except Error:
@@ -244,6 +248,7 @@ class _Corrected:
     def __init__(
         self, plans: Sequence[Plan], quantities: list[str], seed: int, threads: int | None
     ) -> None:
+        """Prepare for plans of one case, several along a sweep, with points by a seed."""
         self.plans, self.quantities, self.threads = plans, quantities, threads
         self.case = plans[0].case
         self.along = int(len(plans) > 1)
@@ -271,7 +276,7 @@ class _Corrected:
         #: Results of thin mechanics at the samples of each plan, where they were needed
         self.of_samples: dict[str, list[Floats]] = {}
         self.solved, self.seconds = 0, 0.0
-        #: What results of each plan are divided by, shape (plans, quantities): those at its middle
+        #: Divisors of the results, shape (plans, quantities): those at the middle of each plan
         self.size = np.stack([np.where(plan.middle == 0, 1.0, plan.middle) for plan in plans])
         self.thin_size = {
             name: self._results_thin(one, np.arange(len(plans)), None)
@@ -495,6 +500,7 @@ class _Corrected:
     def _corrected(
         self, correction: Correction, which: NDArray[np.intp], z: Floats, thin: dict[str, Floats]
     ) -> Floats:
+        """Results of plans `which` at z by thin ones, corrected, shape (points, quantities)."""
         if self.along and z.shape[1] < len(self.coordinates.uniform):
             z = np.column_stack([z, self._place_along(which)])
         found: Floats = correction.results(z, self._parts(which, thin)) * self.size[which]

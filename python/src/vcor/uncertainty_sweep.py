@@ -21,7 +21,7 @@ from .uncertainty_samples import sampled
 
 #: Most points of the sweep that a report shows
 ROWS = 12
-#: What follows the name of a quantity in the columns, and its meaning
+#: Ending of the name of a column after that of a quantity, and its meaning
 COLUMNS = {
     "numerical": "error of the numbers",
     "material": "standard deviation by the parameters",
@@ -207,6 +207,7 @@ def _columns(name: str, along: xr.Dataset) -> dict[str, tuple[NDArray[Any], dict
     attrs = _library.columns(0)[name].attrs
 
     def named(meaning: str) -> dict[str, str]:
+        """Attributes of a column of the quantity."""
         return attrs | {"long_name": f"{attrs['long_name']}: {meaning}"}
 
     found = {name: (along["value"].values, attrs)}
@@ -219,6 +220,7 @@ def _columns(name: str, along: xr.Dataset) -> dict[str, tuple[NDArray[Any], dict
 
 
 def _report(found: Bands) -> str:
+    """The report of the command: some points, the largest errors, shares at both ends."""
     table, name = found.table, found.quantities[0]
     (axis,) = table.coords
     known = [(float(at), one) for at, one in zip(table[axis].values, found.points, strict=True)

@@ -8,6 +8,7 @@ module vcor_c_api_cases
    use vcor_c_api_handle, only : find_place, follow, forget, handle_t, note, open_case, whole_folder
    use vcor_c_api_values, only : c_column_t, c_text, demand, new_column, put_column, put_copy, &
       put_pointer, refuse_long, report_error
+   use vcor_case_address, only : resolve
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, groups, list_key
    use vcor_case_checks, only : validate
@@ -15,7 +16,7 @@ module vcor_c_api_cases
    use vcor_case_entries, only : address_t, entry_t
    use vcor_case_printed, only : case_text, value_text
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_io_case_reader, only : add_materials, override, read_case, read_case_text
+   use vcor_io_case_reader, only : add_materials, read_case, read_case_text, set_value
    use vcor_io_data_file, only : file_keys
    use vcor_io_dump, only : dump_case, load_case
    use vcor_io_file, only : write_file
@@ -278,7 +279,7 @@ contains
       call demand(value, 'value', trouble)
 !$omp critical (vcor_c_api)
       if (.not. allocated(trouble)) then
-         call override(handle%case, fortran(address)//'='//fortran(value), trouble)
+         call set_value(handle%case, fortran(address), fortran(value), trouble)
          if (.not. allocated(trouble)) then
             call find_place(handle%case, fortran(address), place, trouble)
             call note(handle, place)
@@ -320,24 +321,37 @@ contains
    !> Find what is to be removed: a value, a group that occurs once or a material
    subroutine find_removed(case, name, place, error)
       type(case_t), intent(in) :: case
-      !> An address, or the name of a group or of a material
+      !> An address, or the name of a group or of a material, which may be quoted
       character(len=*), intent(in) :: name
       !> Its place; row 0 for a group or a material
       type(address_t), intent(out) :: place
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      place%item = case%find_material(name)
-      if (place%item > 0) then
+      character(len=:), allocatable :: message
+      type(address_t) :: material
+      logical :: is_group
+
+      place%group = find_group(name)
+      is_group = place%group > 0
+      if (is_group) is_group = .not. groups(place%group)%repeated
+      material%item = case%find_material(name)
+      ! the quotes that tell a material from a group in an address
+      if (material%item == 0 .and. scan(name, '''"') == 1) &
+         call resolve(case, name//'.name', material, message)
+      if (is_group .and. material%item > 0) then
+         call raise(error, error_usage, shortened(name)//': found the name of a group and of a ' &
+            //"material, expected '"//shortened(name)//"' in quotes for the material, or a key " &
+            //'of the group')
+      else if (is_group) then
+         place%item = 1
+         return
+      else if (material%item > 0) then
          place%group = find_group('material')
+         place%item = material%item
          return
       end if
-      place%group = find_group(name)
-      if (place%group > 0) then
-         place%item = 1
-         if (.not. groups(place%group)%repeated) return
-      end if
-      call find_place(case, name, place, error)
+      if (.not. allocated(error)) call find_place(case, name, place, error)
       if (.not. allocated(error) .and. place%element > 0) call raise(error, error_usage, &
          shortened(name)//': found one number of a list, expected the list')
    end subroutine find_removed

@@ -11,27 +11,29 @@ module vcor_c_api_handle
    use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_validity, only : surroundings_t
+   use vcor_io_coverage, only : has_data
    use vcor_io_data_file, only : read_data
    use vcor_io_path, only : folder_of, full_path, join_path
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_solver, only : solver_t
-   use vcor_sweep_points, only : new_sweep, sweep_t
-   use vcor_text, only : canonical_name, shortened
+   use vcor_sweep_points, only : most_threads, new_sweep, put_numbers, sweep_t, worker_t
+   use vcor_text, only : canonical_name, integer_text, shortened
    use vcor_words, only : suggestion
    implicit none
    private
 
-   public :: examined_t, handle_t, open_case, open_points, find_place, find_places, follow
-   public :: whole_folder, note, forget, build, build_points, build_own, find_item, find_body, &
-      shortens_only
+   public :: examined_t, handle_t, open_case, check_counts, open_points, find_place, find_places, &
+      follow
+   public :: whole_folder, note, forget, build, build_points, copy_points, find_item, &
+      find_body, shortens_only, take_worker, give_back
 
    !> Most numbers that are set from call to call
    integer, parameter :: most_tuned = 16
 
-   !> Single impacts whose data have been examined: those of one state of the materials between
-   !> two durations
+   !> Single impacts whose data have been examined: those of one state of the materials, the
+   !> shortest and the longest contact of them
    type :: examined_t
       !> Addresses with values for the point, shape (m)
       type(address_t), allocatable :: places(:)
@@ -39,8 +41,8 @@ module vcor_c_api_handle
       real(wp), allocatable :: values(:)
       !> Shortest and longest contact [s]
       real(wp) :: shortest = 0.0_wp, longest = 0.0_wp
-      !> What the data do not say about them, a line each
-      character(len=:), allocatable :: lines
+      !> What the data do not say about each of the two, in lines
+      character(len=:), allocatable :: of_shortest, of_longest
    end type examined_t
 
    !> Target of a `vcor_case`
@@ -57,14 +59,26 @@ module vcor_c_api_handle
       type(address_t), allocatable :: looked_at(:)
       !> Notes on implausible numbers that were handed over, without the place of the number
       character(len=note_length), allocatable :: reported(:)
-      !> Single impacts about which `vcor_beyond_data` was asked last; unallocated: none
+      !> Single impacts of which `vcor_impact` examined the data last; unallocated: none
       type(examined_t), allocatable :: examined
       !> What is common to its impacts
       type(sweep_t) :: sweep
       !> Addresses for which `sweep` was built; unallocated if it must be built
       type(address_t), allocatable :: built_for(:)
+      !> How often it was built
+      integer :: builds = 0
+      !> Whether a material of its bodies has data of a known range
+      logical :: has_data = .false.
+      !> The last single impact of `sweep`, of which the next one takes what is the same;
+      !> unallocated if a call has it, or there was none
+      type(worker_t), allocatable :: worker
       !> Solver that has been settled on the mesh of an impact; unallocated: each has its own
       class(solver_t), allocatable :: solver
+      !> Material that was built last, so that not every call for a modulus checks the case;
+      !> unallocated if it must be built
+      class(material_t), allocatable :: body
+      !> Its index
+      integer :: body_item = 0
    end type handle_t
 
 contains
@@ -108,6 +122,28 @@ contains
          call demand(addresses(i), 'addresses[i]', error)
       end do
    end subroutine open_points
+
+   !> Check the numbers of elements of a call
+   subroutine check_counts(m, n, k, threads, error)
+      !> Numbers of addresses, points, columns and threads
+      integer, intent(in) :: m, n, k, threads
+      !> An earlier error, which is kept, or one of code `error_usage`; unallocated on success
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (allocated(error)) return
+      if (min(m, n, k) < 0) then
+         call raise(error, error_usage, &
+            'found a negative number of addresses, points or columns')
+      else if (m == 0 .and. n > 1) then
+         call raise(error, error_usage, 'found several points without an address, expected one')
+      else if (threads < 0 .or. threads > most_threads) then
+!$omp critical (vcor_c_api)
+         call raise(error, error_usage, 'found '//integer_text(threads) &
+            //' threads, expected 1 to '//integer_text(most_threads) &
+            //', or 0 for as many as there are cores')
+!$omp end critical (vcor_c_api)
+      end if
+   end subroutine check_counts
 
    !> Find the place of an address in a case
    subroutine find_place(case, address, place, error)
@@ -166,6 +202,7 @@ contains
 
       logical :: is_number
 
+      if (allocated(handle%body)) deallocate (handle%body)
       if (allocated(handle%solver) .and. place%group == find_group('solver')) &
          deallocate (handle%solver)
       if (allocated(handle%examined) .and. .not. shortens_only(handle%case, place)) &
@@ -204,6 +241,7 @@ contains
    subroutine forget(handle)
       type(handle_t), intent(inout) :: handle
 
+      if (allocated(handle%body)) deallocate (handle%body)
       if (allocated(handle%built_for)) deallocate (handle%built_for)
       if (allocated(handle%tuned)) deallocate (handle%tuned)
       if (allocated(handle%looked_at)) deallocate (handle%looked_at)
@@ -255,6 +293,8 @@ contains
          end if
          deallocate (handle%built_for)
       end if
+      if (allocated(handle%worker)) deallocate (handle%worker)
+      handle%builds = handle%builds + 1
       call follow(handle)
       case = handle%case
       allocate (own, source=swept_addresses(case))
@@ -300,60 +340,114 @@ contains
          deallocate (handle%sweep%problem%solver)
          allocate (handle%sweep%problem%solver, source=handle%solver)
       end if
+      handle%has_data = has_data(handle%sweep%case)
       handle%built_for = places
    end subroutine build
 
-   !> Build the impacts of points
-   subroutine build_points(handle, places, values, sweep, error, addresses)
+   !> Build the impacts of points. Without addresses it is that of the case: as a point with the
+   !> numbers that were set, or as it is if there are none or they make no point
+   subroutine build_points(handle, addresses, places, values, numbers, error)
       !> The case
       type(handle_t), intent(inout) :: handle
-      !> Places with values for each point, shape (m)
+      !> Addresses with values for each point as the caller has them, shape (m)
+      type(c_ptr), intent(in) :: addresses(:)
+      !> Their places, shape (m)
       type(address_t), intent(in) :: places(:)
       !> Values, shape (m, n)
       real(wp), intent(in) :: values(:, :)
-      type(sweep_t), intent(out) :: sweep
-      type(error_t), allocatable, intent(out) :: error
-      !> Addresses of the places as the caller has them, for messages; absent: their paths
-      type(c_ptr), intent(in), optional :: addresses(:)
-
-      integer :: i
-
-      call build(handle, places, values, error, addresses)
-      if (allocated(error)) return
-      sweep = handle%sweep
-      do i = 1, size(sweep%grid%axes)
-         associate (axis => sweep%grid%axes(i))
-            axis%values = values(findloc(handle%built_for == axis%address, .true., dim=1), :)
-         end associate
-      end do
-   end subroutine build_points
-
-   !> Build the impact of the case as a point with the numbers that were set, or the case as it is
-   !> if there are none or they make no point
-   subroutine build_own(handle, sweep, is_point, error)
-      !> The case
-      type(handle_t), intent(inout) :: handle
-      type(sweep_t), intent(out) :: sweep
-      !> Whether it is a point with the numbers that were set
-      logical, intent(out) :: is_point
+      !> Values at the addresses for which it was built, shape (l, n): those given, or the numbers
+      !> that were set
+      real(wp), allocatable, intent(out) :: numbers(:, :)
       type(error_t), allocatable, intent(out) :: error
 
       type(address_t) :: nowhere(0)
-      real(wp), allocatable :: values(:, :)
-      real(wp) :: nothing(0, 1)
       integer :: i
 
-      is_point = .false.
-      if (allocated(handle%tuned)) is_point = size(handle%tuned) > 0
-      if (is_point) then
-         values = reshape([(handle%case%number(handle%tuned(i)), i=1, size(handle%tuned))], &
-            [size(handle%tuned), 1])
-         call build_points(handle, handle%tuned, values, sweep, error)
-         if (.not. allocated(error)) return
+      numbers = values
+      if (size(places) > 0) then
+         call build(handle, places, values, error, addresses)
+         return
       end if
-      is_point = .false.
-      call build_points(handle, nowhere, nothing, sweep, error)
-   end subroutine build_own
+      if (allocated(handle%tuned)) then
+         if (size(handle%tuned) > 0) then
+            numbers = reshape([(handle%case%number(handle%tuned(i)), i=1, size(handle%tuned))], &
+               [size(handle%tuned), 1])
+            call build(handle, handle%tuned, numbers, error)
+            if (.not. allocated(error)) return
+         end if
+      end if
+      numbers = reshape([real(wp) ::], [0, 1])
+      call build(handle, nowhere, numbers, error)
+   end subroutine build_points
+
+   !> Copy what has been built, with the values of points
+   subroutine copy_points(handle, values, sweep)
+      !> The case, built
+      type(handle_t), intent(in) :: handle
+      !> Values at the addresses for which it was built, shape (m, n)
+      real(wp), intent(in) :: values(:, :)
+      type(sweep_t), intent(out) :: sweep
+
+      integer :: i
+
+      sweep = handle%sweep
+      do i = 1, size(sweep%grid%axes)
+         associate (axis => sweep%grid%axes(i))
+            axis%values = values(place_among(handle, axis%address), :)
+         end associate
+      end do
+   end subroutine copy_points
+
+   !> Place of an address among those for which the case was built
+   pure function place_among(handle, address) result(place)
+      type(handle_t), intent(in) :: handle
+      type(address_t), intent(in) :: address
+      integer :: place
+
+      do place = 1, size(handle%built_for)
+         if (handle%built_for(place) == address) return
+      end do
+   end function place_among
+
+   !> Take the last single impact and give it other numbers, so that the next one is solved while
+   !> others use the case
+   subroutine take_worker(handle, numbers, worker, error)
+      !> The case, built
+      type(handle_t), intent(inout) :: handle
+      !> Numbers at the addresses for which it was built, shape (m)
+      real(wp), intent(in) :: numbers(:)
+      type(worker_t), allocatable, intent(out) :: worker
+      !> Error of code `error_input` of the numbers, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      if (allocated(handle%worker)) then
+         call move_alloc(handle%worker, worker)
+         call worker%problem%surroundings%learn_from(handle%sweep%problem%surroundings)
+      else
+         allocate (worker)
+      end if
+      associate (axes => handle%sweep%grid%axes)
+         call put_numbers(handle%sweep, &
+            [(numbers(place_among(handle, axes(i)%address)), i=1, size(axes))], worker, error)
+      end associate
+   end subroutine take_worker
+
+   !> Give back what `take_worker` has taken, for the next impact
+   subroutine give_back(handle, worker, build)
+      type(handle_t), intent(inout) :: handle
+      !> On return unallocated, if it is kept
+      type(worker_t), allocatable, intent(inout) :: worker
+      !> Number of the build that it is of
+      integer, intent(in) :: build
+
+      call handle%sweep%problem%surroundings%learn_from(worker%problem%surroundings)
+      ! another call may have built something else. A mesh that has been settled must not be lost
+      ! with the settings of one point
+      if (build == handle%builds .and. .not. allocated(handle%solver)) &
+         call move_alloc(worker, handle%worker)
+   end subroutine give_back
 
    !> Find a material of a case
    subroutine find_item(self, name, case, item, error)
@@ -373,19 +467,36 @@ contains
       call demand(name, 'material', error)
       if (allocated(error)) return
 !$omp critical (vcor_c_api)
-      call follow(handle)
-      case = handle%case
-      item = case%find_material(fortran(name))
-      if (item == 0) then
-         call raise(error, error_usage, "there is no material '"//shortened(fortran(name)) &
-            //"'; "//suggestion(canonical_name(fortran(name)), material_names(case)))
-      else
-         call check(case, error)
-      end if
+      call find_name(handle, fortran(name), item, error)
+      if (.not. allocated(error)) call checked(handle, case, error)
 !$omp end critical (vcor_c_api)
    end subroutine find_item
 
-   !> Build a material of a case
+   !> Find the index of a material
+   subroutine find_name(handle, name, item, error)
+      type(handle_t), intent(in) :: handle
+      character(len=*), intent(in) :: name
+      !> Index of the material, 0 if there is none
+      integer, intent(out) :: item
+      type(error_t), allocatable, intent(out) :: error
+
+      item = handle%case%find_material(name)
+      if (item == 0) call raise(error, error_usage, "there is no material '"//shortened(name) &
+         //"'; "//suggestion(canonical_name(name), material_names(handle%case)))
+   end subroutine find_name
+
+   !> A case with its data, checked
+   subroutine checked(handle, case, error)
+      type(handle_t), intent(inout) :: handle
+      type(case_t), intent(out) :: case
+      type(error_t), allocatable, intent(out) :: error
+
+      call follow(handle)
+      case = handle%case
+      call check(case, error)
+   end subroutine checked
+
+   !> Get a material of a case
    subroutine find_body(self, name, material, error)
       type(c_ptr), intent(in) :: self
       !> Name of the material
@@ -393,13 +504,23 @@ contains
       class(material_t), allocatable, intent(out) :: material
       type(error_t), allocatable, intent(out) :: error
 
+      type(handle_t), pointer :: handle
       type(case_t) :: case
       integer :: item
 
-      call find_item(self, name, case, item, error)
+      call open_case(self, handle, error)
+      call demand(name, 'material', error)
       if (allocated(error)) return
 !$omp critical (vcor_c_api)
-      call material_of_case(case, item, material, error)
+      call find_name(handle, fortran(name), item, error)
+      if (allocated(handle%body) .and. handle%body_item /= item) deallocate (handle%body)
+      if (.not. allocated(error) .and. .not. allocated(handle%body)) then
+         call checked(handle, case, error)
+         if (.not. allocated(error)) call material_of_case(case, item, handle%body, error)
+         if (allocated(error) .and. allocated(handle%body)) deallocate (handle%body)
+         handle%body_item = item
+      end if
+      if (.not. allocated(error)) allocate (material, source=handle%body)
 !$omp end critical (vcor_c_api)
    end subroutine find_body
 

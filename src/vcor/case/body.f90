@@ -115,7 +115,7 @@ contains
       allocate (parameters, source=[density])
       ! nothing of a rigid body counts but its mass
       if (data%model == 'rigid') then
-         call reading%leave(case%address('material', 'poisson_ratio', item), &
+         call reading%note_unread(case%address('material', 'poisson_ratio', item), &
             'a rigid body does not deform')
       else
          parameters = [parameters, parameters_of(data%model)]
@@ -173,9 +173,9 @@ contains
       if (law == '') return
       temperature = case%address('impact', 'temperature')
       if (ieee_is_nan(reading%number(case, temperature))) then
-         call reading%leave(case%address('material', 'shift', item), without_temperature)
+         call reading%note_unread(case%address('material', 'shift', item), without_temperature)
          do i = 1, size(shift_keys)
-            call reading%leave(case%address('material', trim(shift_keys(i)), item), &
+            call reading%note_unread(case%address('material', trim(shift_keys(i)), item), &
                without_temperature)
          end do
          return

@@ -313,8 +313,12 @@ contains
 
       character(len=len(name)) :: small
 
+      group = 0
+      if (name == "") return
       small = lower(name)
       do group = 1, size(groups)
+         ! most names differ in their first letter, which is compared without a call
+         if (groups(group)%name(1:1) /= small(1:1)) cycle
          if (groups(group)%name == small) return
       end do
       group = 0
@@ -334,9 +338,10 @@ contains
 
       row = 0
       owner = find_group(group)
-      if (owner == 0) return
+      if (owner == 0 .or. name == "") return
       small = lower(name)
       do row = first_row(owner), last_row(owner)
+         if (catalogue(row)%name(1:1) /= small(1:1)) cycle
          if (catalogue(row)%name == small) return
       end do
       row = 0

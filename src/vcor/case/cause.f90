@@ -6,7 +6,7 @@ module vcor_case_cause
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       keys_of, last_row, list_key
-   use vcor_case_entries, only : address_t, entry_t
+   use vcor_case_entries, only : address_t, entry_t, operator(==)
    use vcor_case_printed, only : value_text
    use vcor_error, only : error_t
    use vcor_text, only : integer_text, quoted, shortened
@@ -35,6 +35,7 @@ contains
       type(error_t), intent(inout) :: error
 
       type(address_t) :: address, cause
+      type(address_t), allocatable :: named(:)
       type(entry_t) :: entry
       character(len=longest_name), allocatable :: names(:)
       character(len=:), allocatable :: place, found, name
@@ -42,11 +43,15 @@ contains
       logical :: is_given
 
       allocate (names, source=names_about(error))
+      allocate (named(0))
       found = ''
       is_given = .false.
       do i = 1, size(names)
          address = address_of(case, trim(names(i)), error%item)
          if (address%group == 0) cycle
+         ! two names of one quantity are the key that is given
+         if (any(named == address)) cycle
+         named = [named, address]
          entry = case%entry(address)
          ! the first one that was given, otherwise the first
          if (cause%group == 0 .or. entry%given .and. .not. is_given) cause = address

@@ -273,24 +273,26 @@ contains
              .and. .not. shapes(find_shape(self%model(find_group('sphere'), 1)))%recedes) cycle
          if (own_rules(i)%key == 'pair' .and. why_no_pair(self) /= '') cycle
          if (own_rules(i)%method == coupled) call demand(trim(own_rules(i)%group), &
-            trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'")
+            trim(own_rules(i)%key), "'"//trim(own_rules(i)%value)//"'", is_read=.true.)
       end do
       do i = 1, size(unread)
          if (.not. (unread(i)%contradicts .and. any(unread(i)%by == coupled))) cycle
          keys = list_of_words(trim(unread(i)%keys))
          do j = 1, size(keys)
             call demand(trim(unread(i)%group), trim(keys(j)), &
-               default_text(find_key(trim(unread(i)%group), trim(keys(j)))))
+               default_text(find_key(trim(unread(i)%group), trim(keys(j)))), is_read=.false.)
          end do
       end do
 
    contains
 
       !> Refuse a key that is given with another value
-      subroutine demand(group, key, allowed)
+      subroutine demand(group, key, allowed, is_read)
          character(len=*), intent(in) :: group, key
          !> The value that it may have, as in a case; empty if there is none
          character(len=*), intent(in) :: allowed
+         !> Whether the key is read: otherwise --set would refuse that value, too
+         logical, intent(in) :: is_read
 
          character(len=:), allocatable :: expected, found
          type(address_t) :: address
@@ -300,8 +302,8 @@ contains
          address = self%address(group, key)
          found = value_text(catalogue(address%row), self%entry(address))
          if (found == allowed) return
-         expected = allowed
-         if (expected /= '') expected = expected//' or '
+         expected = ''
+         if (is_read) expected = allowed//' or '
          call self%refuse(group, key, 1, 'found '//key//' = '//found//' with '//cause &
             //', expected '//expected//'no such key', error)
       end subroutine demand
@@ -431,11 +433,16 @@ contains
 
       type(entry_t) :: entry
       character(len=:), allocatable :: key, other, model, label, message
+      logical :: is_here, is_other_here
       integer :: row
 
       key = trim(catalogue(address%row)%name)
       other = trim(catalogue(address%row)%instead)
       entry = self%entry(address)
+      is_here = entry%given .or. any(swept == address)
+      ! most keys have no other one, and to look for it takes as long as all else
+      is_other_here = .false.
+      if (other /= '') is_other_here = is_there(other)
       row = self%row(address)
       model = self%model(address%group, address%item)
       message = ''
@@ -444,13 +451,13 @@ contains
             if (entry%given) message = "key '"//key//"' does not belong to "//trim(group%selector) &
                //" '"//model &
                //"', its keys are: "//join_words(keys_of(address%group, model))
-         else if (is_there(key) .and. is_there(other) .and. .not. is_ousted()) then
+         else if (is_here .and. is_other_here .and. .not. is_replaced()) then
             call self%refuse(group%name, other, address%item, 'found both '//key//' and '//other &
                //', expected one of them', error)
          else if (entry%present) then
             message = range_message(catalogue(row), entry)
             if (message /= '') message = key//': '//message
-         else if (catalogue(row)%required .and. .not. (is_there(key) .or. is_there(other))) then
+         else if (catalogue(row)%required .and. .not. (is_here .or. is_other_here)) then
             message = "key '"//key//"' is missing in &"//trim(group%name)
             if (group%label /= '' .and. group%label /= key) then
                call self%get(group%name, group%label, label, address%item)
@@ -471,12 +478,12 @@ contains
          character(len=*), intent(in) :: name
          logical :: yes
 
-         yes = self%given(groups(address%group)%name, name, address%item) .or. name /= '' &
-            .and. any(swept == self%address(groups(address%group)%name, name, address%item))
+         yes = self%given(groups(address%group)%name, name, address%item) &
+            .or. any(swept == self%address(groups(address%group)%name, name, address%item))
       end function is_there
 
       !> Whether one of the two keys is swept, and the other one comes from the case file
-      pure function is_ousted() result(yes)
+      pure function is_replaced() result(yes)
          logical :: yes
 
          type(address_t) :: place
@@ -487,7 +494,7 @@ contains
          if (any(swept == address)) fixed = self%entry(place)
          yes = (any(swept == address) .neqv. any(swept == place)) &
             .and. .not. allocated(fixed%origin)
-      end function is_ousted
+      end function is_replaced
    end subroutine check_entry
 
    !> Notes about implausible numbers of a case
@@ -525,15 +532,15 @@ contains
                   values = pack(grid%axes(axis)%values, ieee_is_finite(grid%axes(axis)%values))
                   place = case%location('sweep', 'parameter', axis)
                end do
-               if (size(values) > 0) call judge(limits(i), case%path(address))
+               if (size(values) > 0) call note_if_beyond(limits(i), case%path(address))
             end do
          end do
       end do
 
    contains
 
-      !> Check the values of one key
-      subroutine judge(limit, name)
+      !> Note that a value of a key is beyond its limits
+      subroutine note_if_beyond(limit, name)
          type(limits_t), intent(in) :: limit
          !> Path of the key
          character(len=*), intent(in) :: name
@@ -563,7 +570,7 @@ contains
          ! a value that was set has its address as its place
          if (place /= name) note = place//': '//note
          notes = [notes, note]
-      end subroutine judge
+      end subroutine note_if_beyond
    end subroutine implausible_numbers
 
    !> Whether limits apply to a key

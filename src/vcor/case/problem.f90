@@ -38,6 +38,7 @@ module vcor_case_problem
    use vcor_kinds, only : standard_gravity, wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_t
+   use vcor_solver_features, only : features, of_structure, of_thin_plate, refuse_features
    implicit none
    private
 
@@ -215,8 +216,16 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      call new_contact_modulus(self%impact%modulus, self%sphere, self%plate, &
-         inputs%material(of_sphere)%deforms_as(inputs%material(of_plate)), error, inputs%pair)
+      logical :: has(size(features))
+
+      ! before such waves ask for a thickness
+      has = .false.
+      has(of_structure) = inputs%target%body /= target_none
+      has(of_thin_plate) = all(inputs%waves /= [waves_none, waves_body])
+      call refuse_features(has, error)
+      if (.not. allocated(error)) call new_contact_modulus(self%impact%modulus, self%sphere, &
+         self%plate, inputs%material(of_sphere)%deforms_as(inputs%material(of_plate)), error, &
+         inputs%pair)
       if (.not. allocated(error)) call new_plate(self%impact%target, self%plate, &
          inputs%half_thickness, merge(waves_none, inputs%waves, inputs%waves == waves_body), error)
       if (.not. allocated(error)) call build_face(self, inputs, error)

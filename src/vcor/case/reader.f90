@@ -104,7 +104,7 @@ contains
       call take(case, inputs, reading, 'sphere', 'mass')
       density = case%address('material', 'density', inputs%item(of_sphere))
       if (case%given('sphere', 'mass')) then
-         call reading%leave(density, 'sphere.mass gives the mass of the sphere')
+         call reading%note_unread(density, 'sphere.mass gives the mass of the sphere')
       else if (ieee_is_nan(inputs%mass)) then
          call reading%mark(density)
       end if
@@ -133,9 +133,10 @@ contains
       if (inputs%material(of_plate)%model == 'rigid') then
          inputs%waves = waves_none
          do i = 1, size(keys)
-            call reading%leave(case%address('plate', trim(keys(i))), at_rest)
+            call reading%note_unread(case%address('plate', trim(keys(i))), at_rest)
          end do
-         call reading%leave(case%address('material', 'density', inputs%item(of_plate)), at_rest)
+         call reading%note_unread(case%address('material', 'density', inputs%item(of_plate)), &
+            at_rest)
          return
       end if
       call reading%mark(case%address('material', 'density', inputs%item(of_plate)))
@@ -147,12 +148,12 @@ contains
       ! with waves the thickness is that of a free plate beside the body, which is refused
       if (inputs%base == base_free .and. waves == 'none' .and. any(bodies_without == text)) then
          do i = 1, size(thicknesses)
-            call reading%leave(case%address('plate', trim(thicknesses(i))), &
+            call reading%note_unread(case%address('plate', trim(thicknesses(i))), &
                "the surface of this body has no thickness of its own; that of a layer needs base")
          end do
       else if (inputs%base == base_free .and. case%given('target', 'thickness')) then
          do i = 1, size(thicknesses)
-            call reading%leave(case%address('plate', trim(thicknesses(i))), &
+            call reading%note_unread(case%address('plate', trim(thicknesses(i))), &
                'target.thickness is that of the plate or beam')
          end do
       else
@@ -166,9 +167,9 @@ contains
       inputs%waves_are_chosen = mechanics == 'exact' .and. .not. case%given('plate', 'waves') &
          .and. case%count('target') == 0
       if (case%count('target') > 0) then
-         call reading%leave(case%address('plate', 'extent'), '&target has its edges')
+         call reading%note_unread(case%address('plate', 'extent'), '&target has its edges')
       else if (text == 'none') then
-         call reading%leave(case%address('plate', 'extent'), &
+         call reading%note_unread(case%address('plate', 'extent'), &
             "with plate.waves = 'none' the plate does not move")
       else
          call take(case, inputs, reading, 'plate', 'extent')
@@ -235,7 +236,7 @@ contains
       if (.not. shapes(inputs%shape)%recedes) then
          ! a user who requests it gets an error
          inputs%receding = inputs%receding .and. case%given('contact', 'law')
-         call reading%leave(case%address('contact', 'law'), &
+         call reading%note_unread(case%address('contact', 'law'), &
             'the contact of a flat punch does not recede')
       else
          call reading%mark(case%address('contact', 'law'))
@@ -244,13 +245,15 @@ contains
          call reading%get(case, 'contact', 'pair', text)
          inputs%pair = merge(pair_series, pair_eq1, text == 'series')
       else
-         call reading%leave(case%address('contact', 'pair'), why_no_pair(case))
+         call reading%note_unread(case%address('contact', 'pair'), why_no_pair(case))
       end if
-      ! it chooses what is not given
-      if (case%given('contact', 'law') .and. case%given('contact', 'pair') &
-          .and. case%given('plate', 'waves')) then
-         call reading%leave(case%address('contact', 'mechanics'), &
-            'contact.law, contact.pair and plate.waves are all given')
+      ! it chooses what is not given and has an effect
+      if ((case%given('contact', 'law') .or. .not. shapes(inputs%shape)%recedes) &
+          .and. (case%given('contact', 'pair') .or. why_no_pair(case) /= '') &
+          .and. (case%given('plate', 'waves') .or. case%count('target') > 0 &
+          .or. inputs%material(of_plate)%model == 'rigid')) then
+         call reading%note_unread(case%address('contact', 'mechanics'), &
+            'contact.law, contact.pair and plate.waves are given, or have no effect')
       else
          call reading%mark(case%address('contact', 'mechanics'))
       end if
@@ -298,7 +301,7 @@ contains
          if (reason == '') then
             call reading%mark(case%address(trim(groups(i)), trim(keys(i))))
          else
-            call reading%leave(case%address(trim(groups(i)), trim(keys(i))), trim(reason))
+            call reading%note_unread(case%address(trim(groups(i)), trim(keys(i))), trim(reason))
          end if
       end do
    end subroutine read_solver

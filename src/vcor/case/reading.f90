@@ -43,10 +43,10 @@ module vcor_case_reading
       !> Reasons why values are left out, shape (n)
       type(reason_t), allocatable :: reasons(:)
    contains
-      procedure :: start, mark, leave, has
+      procedure :: start, mark, note_unread, has
       generic :: get => get_logical, get_text
       procedure :: number => read_number
-      procedure, private :: get_logical, get_text, leaves, reason_of, why_not
+      procedure, private :: get_logical, get_text, is_noted_unread, reason_of, why_not
    end type reading_t
 
 contains
@@ -76,14 +76,14 @@ contains
       if (warns) self%use(address%item, address%row) = is_for_warnings
    end subroutine mark
 
-   !> State why a value is left out
-   pure subroutine leave(self, address, reason)
+   !> State why a value is not read
+   pure subroutine note_unread(self, address, reason)
       class(reading_t), intent(inout) :: self
       type(address_t), intent(in) :: address
       character(len=*), intent(in) :: reason
 
       self%reasons = [self%reasons, reason_t(address, reason)]
-   end subroutine leave
+   end subroutine note_unread
 
    !> Whether a value has been read
    pure function has(self, address)
@@ -157,13 +157,13 @@ contains
    end function why_not
 
    !> Whether a value is left out for a reason
-   pure function leaves(self, address)
+   pure function is_noted_unread(self, address)
       class(reading_t), intent(in) :: self
       type(address_t), intent(in) :: address
-      logical :: leaves
+      logical :: is_noted_unread
 
-      leaves = self%reason_of(address) > 0
-   end function leaves
+      is_noted_unread = self%reason_of(address) > 0
+   end function is_noted_unread
 
    !> Place of the reason why a value is left out
    pure function reason_of(self, address) result(i)
@@ -201,7 +201,7 @@ contains
       allocate (swept, source=swept_addresses(case))
       do i = 1, size(swept)
          if (reading%has(swept(i))) cycle
-         if (.not. (is_complete .or. reading%leaves(swept(i)))) cycle
+         if (.not. (is_complete .or. reading%is_noted_unread(swept(i)))) cycle
          call case%get('sweep', 'parameter', path, i)
          call case%refuse('sweep', 'parameter', i, "found '"//shortened(path) &
             //"', which the impact does not read: "//reading%why_not(case, swept(i)), error)
@@ -217,7 +217,7 @@ contains
                reason = why_varied(case, swept, address, entry%origin)
                if (reason == '' .and. any(described == groups(group)%name)) then
                   if (reading%use(item, row) == is_unread &
-                      .and. (is_complete .or. reading%leaves(address)) &
+                      .and. (is_complete .or. reading%is_noted_unread(address)) &
                       .and. .not. (all_materials .and. groups(group)%name == 'material')) &
                      reason = 'the impact does not read it: '//reading%why_not(case, address)
                end if

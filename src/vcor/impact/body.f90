@@ -11,6 +11,7 @@ module vcor_impact_body
    use vcor_kinds, only : pi, wp
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : gauss_nodes
+   use vcor_tuning, only : most_iterations
    implicit none
    private
 
@@ -322,7 +323,6 @@ contains
       !> Root of the frequency, and the square of the shape, with the mean 1 over the length
       real(wp), intent(out) :: root, square
 
-      integer, parameter :: most = 20
       real(wp) :: side, decay, c, q, shape, change
       integer :: i
 
@@ -334,7 +334,7 @@ contains
       ! cos(lambda) cosh(lambda) = side, by Newton's method
       side = merge(-1.0_wp, 1.0_wp, support == support_cantilever)
       root = (real(k, wp) + merge(-0.5_wp, 0.5_wp, support == support_cantilever))*pi
-      do i = 1, most
+      do i = 1, most_iterations
          decay = 2.0_wp*exp(-root)/(1.0_wp + exp(-2.0_wp*root))
          change = (cos(root) - side*decay)/(sin(root) - side*decay*tanh(root))
          root = root + change
@@ -408,7 +408,7 @@ contains
       !> Flexibility times stiffness [m2]
       real(wp) :: flexibility
 
-      ! the rest beyond the average falls as the third power of the number of terms
+      ! the rest beyond the average falls as the third power of the number of terms, to 1e-13
       integer, parameter :: terms = 20000
       real(wp) :: k, g, slope, far, near(3)
       integer :: i

@@ -1,7 +1,8 @@
 !> Contact modulus E'(t) of two bodies, Eq. (1) of Green's paper
 module vcor_impact_contact
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_pair, only : new_signed_fit, signed_fit_t, sum_with_elastic
+   use vcor_impact_pair, only : first_sample, new_signed_fit, signed_fit_t, &
+      sum_with_elastic
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
@@ -360,8 +361,6 @@ contains
       !> The sum; `terms%error` is its estimated relative error
       type(exponential_sum_t), intent(out) :: terms
 
-      ! part of the window within which the fastest term of a fit has decayed
-      real(wp), parameter :: early = 0.01_wp
       type(exponential_sum_t) :: one
       logical :: is_found
       integer :: n
@@ -379,7 +378,8 @@ contains
             ! it
             n = size(one%rates)
             if (n > 0) one%moduli(n) = one%moduli(n) + one%rates(n) &
-               *(self%integral(early*window) - one%integral(early*window))
+               *(self%integral(first_sample*window) &
+               - one%integral(first_sample*window))
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
          end if
@@ -415,8 +415,8 @@ contains
       !> Whether it is such a pair and the sum is short enough
       logical, intent(out) :: is_found
 
-      ! accuracy of the expansion over that requested, since digits cost little; lower bound by
-      ! rounding
+      ! accuracy of the expansion over that requested, since digits cost little: with 1, 18 of 371
+      ! random impacts change, by up to 11 stated errors; lower bound by rounding
       real(wp), parameter :: finer = 1.0e-2_wp, finest = 1.0e-13_wp
       type(exponential_sum_t) :: other
       real(wp) :: elastic

@@ -117,6 +117,7 @@ contains
       real(wp), intent(in) :: exponent
       real(wp) :: bounded
 
+      ! exp(-5) = 7e-3: more of the energy than this is lost, and the change is outside in any case
       real(wp), parameter :: most = 5.0_wp
 
       bounded = min(max(exponent, -most), most)

@@ -23,6 +23,7 @@ module vcor_impact_law
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_law_table, only : law_table_t
    use vcor_kinds, only : pi, wp
+   use vcor_tuning, only : most_iterations
    implicit none
    private
 
@@ -31,9 +32,8 @@ module vcor_impact_law
 
    !> Exponent of Hertzian contact of curved surfaces [-]
    real(wp), parameter :: hertz = 1.5_wp
-   !> Most iterations of Newton's method, and relative change after which none is left: the method
-   !> squares it, so that the next one is below the rounding of 1e-16
-   integer, parameter :: most_iterations = 60
+   !> Relative change after which Newton's method needs no other iteration: the method squares it,
+   !> so that the next one is below the rounding of 1e-16
    real(wp), parameter :: close = 1.0e-9_wp
 
    !> A contact law, by default Hertz's with the hereditary integral over all the past, which is
@@ -435,6 +435,8 @@ contains
       !> Indentation [m]
       real(wp), intent(out) :: s
 
+      ! part of the largest possible root: a guess of it takes one step up to 500 times the root,
+      ! and nine that halve the distance
       real(wp), parameter :: least_guess = 1.0e-3_wp
       real(wp) :: e, y, u, correction, secant(1), slope(1)
       integer :: iteration

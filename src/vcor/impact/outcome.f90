@@ -279,7 +279,7 @@ contains
       class(outcome_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
 
-      if (.not. impact%springs_back()) return
+      if (.not. impact%pushes_apart()) return
       self%residual_indentation = impact%law%inverse(impact%mass*impact%gravity &
          /(impact%factor*impact%modulus%rubbery()))
       self%max_indentation = max(self%max_indentation, self%residual_indentation)
@@ -333,7 +333,7 @@ contains
       class(outcome_t), intent(in) :: self
       logical :: gains
 
-      ! of sums of thousands of terms
+      ! of sums of thousands of terms: 4500 times epsilon
       real(wp), parameter :: rounding = 1.0e-12_wp
       real(wp) :: cor_margin, sphere_margin
 

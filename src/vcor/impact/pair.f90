@@ -32,7 +32,7 @@ module vcor_impact_pair
    implicit none
    private
 
-   public :: sum_with_elastic, signed_fit_t, new_signed_fit
+   public :: first_sample, sum_with_elastic, signed_fit_t, new_signed_fit
 
    !> Times, in units of the window, up to which the modulus is integrated. The modulus may be
    !> singular at 0 and is smooth in the logarithm of time afterwards
@@ -40,6 +40,8 @@ module vcor_impact_pair
       0.1_wp, parts]
    !> Index in `ends` of the time from which values of the fit count; before, only its integral
    integer, parameter :: checked = 5
+   !> That time, in units of the window
+   real(wp), parameter :: first_sample = ends(checked)
 
    !> Data that all fits share, in units of the window
    type :: signed_fit_t

@@ -19,6 +19,7 @@ module vcor_impact_problem
    use vcor_impact_target, only : target_t
    use vcor_kinds, only : unset, wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_number, only : least_magnitude, most_magnitude
    implicit none
    private
 
@@ -57,13 +58,13 @@ module vcor_impact_problem
       procedure :: time_scale
       procedure, private :: elastic_time
       procedure :: deepest
-      procedure :: patience
-      procedure :: outruns
+      procedure :: lasting_time
+      procedure :: may_part_unnoticed
       procedure :: first_force
       procedure :: ringing
       procedure :: firmness_after
       procedure :: contact_radius
-      procedure :: springs_back
+      procedure :: pushes_apart
       procedure :: inelasticity
       procedure :: inelasticity_at
       procedure :: initial_energy
@@ -122,15 +123,12 @@ contains
       !> Gravity [m/s2], >= 0; absent: 0
       real(wp), intent(in), optional :: gravity
 
-      ! keeps energies and their products within the range of numbers
-      real(wp), parameter :: largest = 1.0e60_wp
-
       ! the computed mass of a tiny sphere may underflow to zero
       if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. factor > 0.0_wp)) then
          call raise(error, error_input, 'velocity, mass and radius of the sphere must be ' &
             //'positive', about='velocity mass radius')
-      else if (max(velocity, mass, factor**2) > largest &
-               .or. min(velocity, mass, factor**2) < 1.0_wp/largest) then
+      else if (max(velocity, mass, factor**2) > most_magnitude &
+               .or. min(velocity, mass, factor**2) < least_magnitude) then
          call raise(error, error_input, &
             'velocity, mass or radius of the sphere is out of the range that can be computed', &
             about='velocity mass radius')
@@ -138,7 +136,7 @@ contains
       self%gravity = 0.0_wp
       if (present(gravity)) self%gravity = gravity
       if (.not. ieee_is_finite(self%gravity)) self%gravity = -1.0_wp
-      if (self%gravity < 0.0_wp .or. self%gravity > largest) call raise(error, error_input, &
+      if (self%gravity < 0.0_wp .or. self%gravity > most_magnitude) call raise(error, error_input, &
          'gravity must not be negative, nor out of the range that can be computed', about='gravity')
       if (allocated(error)) return
       self%velocity = velocity
@@ -376,7 +374,7 @@ contains
 
    !> Default time after which a contact counts as lasting: a thousand time scales, with the rubbery
    !> modulus if there is one, and of the sphere on a structure
-   pure function patience(self, time_scale) result(time)
+   pure function lasting_time(self, time_scale) result(time)
       class(impact_t), intent(in) :: self
       !> Time scale T [s]
       real(wp), intent(in) :: time_scale
@@ -389,12 +387,12 @@ contains
       firmness = self%factor*self%modulus%rubbery()
       if (firmness > 0.0_wp) time = max(time, self%elastic_time(firmness))
       time = 1000.0_wp*max(time, self%target%structure%slowness(self%mass))
-   end function patience
+   end function lasting_time
 
    !> Whether the plate may move away from the sphere and be caught up with within one step,
    !> unnoticed: alpha grows during the step, and alpha I is a noticeable part of the distance
    !> covered
-   elemental function outruns(self, alpha_before, alpha, impulse, time)
+   elemental function may_part_unnoticed(self, alpha_before, alpha, impulse, time)
       class(impact_t), intent(in) :: self
       !> alpha at the start and at the end of the step [m/(N s)]
       real(wp), intent(in) :: alpha_before, alpha
@@ -402,28 +400,31 @@ contains
       real(wp), intent(in) :: impulse
       !> End of the step [s]
       real(wp), intent(in) :: time
-      logical :: outruns
+      logical :: may_part_unnoticed
 
-      ! growth of alpha in a step that resolves it, and noticeable part of the distance
+      ! growth of alpha in a step that resolves it, and noticeable part of the distance: half and
+      ! twice as much of the latter make six panels more and two fewer of 1118 in 109 random impacts
       real(wp), parameter :: resolved = 2.0_wp, noticeable = 0.3_wp
 
-      outruns = alpha > resolved*alpha_before .and. alpha*impulse > noticeable*self%free_path(time)
-   end function outruns
+      may_part_unnoticed = alpha > resolved*alpha_before &
+         .and. alpha*impulse > noticeable*self%free_path(time)
+   end function may_part_unnoticed
 
    !> Whether the contact has an equilibrium modulus that pushes the bodies apart once all else has
    !> relaxed. For a fluid-like contact the COR is about its ratio to the mean modulus over the
    !> contact; it counts as zero below the rounding of the velocities
-   pure function springs_back(self)
+   pure function pushes_apart(self)
       class(impact_t), intent(in) :: self
-      logical :: springs_back
+      logical :: pushes_apart
 
+      ! velocities are sums of hundreds of terms
       real(wp), parameter :: rounding = 1.0e-13_wp
       real(wp) :: time
 
       time = self%time_scale()
-      springs_back = self%factor*self%modulus%rubbery()*time &
+      pushes_apart = self%factor*self%modulus%rubbery()*time &
          > rounding*(self%kernel_integral(time) + self%kernel_viscosity())
-   end function springs_back
+   end function pushes_apart
 
    !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); NaN for a kernel
    !> that is infinite or zero at t = 0, and for a plate that moves but is infinitely stiff then

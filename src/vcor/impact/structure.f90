@@ -12,7 +12,7 @@
 !> its material as a sum of exponentials each mode is an oscillator and exponentials
 !> (`vcor_impact_creep`):
 !>
-!>     U = C_r F + sum_n eta_n + sum_k z_k,   eta' = v + kick F,   v' = -b eta - a v + q F,
+!>     U = C_r F + sum_n eta_n + sum_k z_k,   eta' = v + jump F,   v' = -b eta - a v + q F,
 !>                                            z_k' = r_k F - x_k z_k
 !>
 !> Once the force has ended, v^2 + b eta^2 of each mode only falls. The struck point then comes at
@@ -80,9 +80,9 @@ module vcor_impact_structure
 
    !> A structure with its material as a sum of exponentials
    type :: vibration_t
-      !> Squares b of the frequencies [1/s2], dampings a [1/s], yields q [1/kg] and kicks of the
+      !> Squares b of the frequencies [1/s2], dampings a [1/s], yields q [1/kg] and jumps of the
       !> oscillators [s/kg], shape (modes)
-      real(wp), allocatable :: square(:), damping(:), yield(:), kick(:)
+      real(wp), allocatable :: square(:), damping(:), yield(:), jump(:)
       !> Rates x [1/s] and weights r [s/kg] of the exponentials, shape (n); none if the material
       !> does not relax
       real(wp), allocatable :: rate(:), weight(:)
@@ -261,12 +261,12 @@ contains
       n = size(self%square)
       all = n + merge(2, 0, self%rest%flexibility > 0.0_wp)
       allocate (vibration%square(all), vibration%damping(all), vibration%yield(all), &
-         vibration%kick(all))
+         vibration%jump(all))
       if (.not. allocated(self%material)) then
          vibration%square(:n) = self%square
          vibration%damping(:n) = self%damping
          vibration%yield(:n) = self%yield
-         vibration%kick(:n) = 0.0_wp
+         vibration%jump(:n) = 0.0_wp
          allocate (vibration%rate(0), vibration%weight(0))
          terms%equilibrium = 1.0_wp
          allocate (terms%rates(0), terms%moduli(0))
@@ -284,14 +284,14 @@ contains
          vibration%error = terms%error
          call split_modes(terms, self%square, self%damping + self%square*terms%viscosity, &
             self%yield, vibration%damping(:n), vibration%square(:n), vibration%yield(:n), &
-            vibration%kick(:n), vibration%rate, vibration%weight)
+            vibration%jump(:n), vibration%rate, vibration%weight)
          vibration%relaxes = size(vibration%rate) > 0
       end if
       if (all == n) return
       call split_rest(terms, self%rest%flexibility, self%rest%delay, [1.0_wp, &
          rest_damping(1) - self%rest%loss, rest_damping(2) - 1.0_wp &
          - rest_damping(1)*self%rest%loss], vibration%damping(n + 1:), vibration%square(n + 1:), &
-         vibration%yield(n + 1:), vibration%kick(n + 1:), rate, weight)
+         vibration%yield(n + 1:), vibration%jump(n + 1:), rate, weight)
       vibration%rate = [vibration%rate, rate]
       vibration%weight = [vibration%weight, weight]
    end subroutine expand
@@ -300,7 +300,7 @@ contains
    subroutine make_none(self)
       class(vibration_t), intent(out) :: self
 
-      allocate (self%square(0), self%damping(0), self%yield(0), self%kick(0), self%rate(0), &
+      allocate (self%square(0), self%damping(0), self%yield(0), self%jump(0), self%rate(0), &
          self%weight(0))
    end subroutine make_none
 

@@ -11,6 +11,7 @@ module vcor_impact_target
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
+   use vcor_number, only : least_magnitude, most_magnitude
    implicit none
    private
 
@@ -27,10 +28,6 @@ module vcor_impact_target
    integer, parameter :: waves_frozen = 3
    !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a thin viscoelastic plate
    integer, parameter :: waves_hereditary = 4
-
-   !> Lower bound of the modulus in alpha [Pa]: for a modulus that has decayed to zero the plate
-   !> yields at once, but alpha, its rate and their products stay finite
-   real(wp), parameter :: least = 1.0e-60_wp
 
    !> Deflection U of the struck point, of a plate that of its mid-plane, under the contact force
    type :: target_t
@@ -99,9 +96,6 @@ contains
       integer, intent(in) :: waves
       type(error_t), allocatable, intent(out) :: error
 
-      ! keeps alpha, its products with the mass and their squares within the range of numbers
-      real(wp), parameter :: largest = 1.0e60_wp
-
       if (all(waves /= [waves_none, waves_constant, waves_relaxing, waves_frozen, &
           waves_hereditary])) call raise(error, error_input, 'unknown kind of waves, ' &
          //'expected one of the constants waves_*', about='waves')
@@ -114,8 +108,8 @@ contains
       else if (.not. material%density() > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs the density of its ' &
             //"material; use waves = 'none' for a half space", about='density')
-      else if (max(half_thickness, material%density()) > largest &
-               .or. min(half_thickness, material%density()) < 1.0_wp/largest) then
+      else if (max(half_thickness, material%density()) > most_magnitude &
+               .or. min(half_thickness, material%density()) < least_magnitude) then
          call raise(error, error_input, 'half_thickness or density of the plate is out of the ' &
             //'range that can be computed', about='half_thickness density')
       else if (.not. material%glassy() > 0.0_wp .and. waves < waves_hereditary) then
@@ -154,8 +148,9 @@ contains
       !> Deflection per impulse [m/(N s)]
       real(wp) :: value
 
+      ! where the modulus has decayed to zero the plate yields at once, but alpha stays finite
       if (allocated(self%material)) then
-         value = self%coefficient/sqrt(max(self%material%relaxation(t), least))
+         value = self%coefficient/sqrt(max(self%material%relaxation(t), least_magnitude))
       else
          value = self%initial
       end if
@@ -174,7 +169,7 @@ contains
       if (allocated(self%material)) then
          call self%material%relaxation_at(t, value)
          do j = 1, size(t)
-            value(j) = self%coefficient/sqrt(max(value(j), least))
+            value(j) = self%coefficient/sqrt(max(value(j), least_magnitude))
          end do
       else
          value = self%initial

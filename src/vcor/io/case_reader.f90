@@ -17,7 +17,7 @@ module vcor_io_case_reader
    implicit none
    private
 
-   public :: read_case, read_case_text, add_materials, override
+   public :: read_case, read_case_text, add_materials, override, set_value
 
    !> Largest number of items of a repeated group
    integer, parameter :: most_items = 1000
@@ -198,25 +198,47 @@ contains
       !> Beginning of messages about the value, before its address; absent: none
       character(len=*), intent(in), optional :: option
 
+      character(len=:), allocatable :: by
+      integer :: mark
+
+      by = ""
+      if (present(option)) by = option//" "
+      mark = end_of_path(setting)
+      if (has_control(setting)) then
+         call raise(error, error_usage, by//shortened(setting)//": found a control character")
+      else if (mark < 2) then
+         call raise(error, error_usage, by//shortened(setting)//": expected group.key=value")
+      else
+         call set_value(case, setting(:mark-1), setting(mark+1:), error, option)
+      end if
+   end subroutine override
+
+   !> Set the value at a path
+   subroutine set_value(case, address_text, value, error, option)
+      type(case_t), intent(inout) :: case
+      !> `group.key` or `material_name.key`
+      character(len=*), intent(in) :: address_text
+      !> As a namelist has it; a text needs no quotes
+      character(len=*), intent(in) :: value
+      !> As of `override`
+      type(error_t), allocatable, intent(out) :: error
+      !> Beginning of messages about the value, before its address; absent: none
+      character(len=*), intent(in), optional :: option
+
       type(entry_t) :: entry
       character(len=:), allocatable :: message, path, by
       type(address_t) :: address
       type(key_t) :: key
-      integer :: mark, row
+      integer :: row
 
       by = ""
       if (present(option)) by = option//" "
-      if (has_control(setting)) then
-         call raise(error, error_usage, by//shortened(setting)//": found a control character")
-         return
-      end if
-      mark = end_of_path(setting)
-      if (mark < 2) then
-         call raise(error, error_usage, by//shortened(setting)//": expected group.key=value")
-         return
-      end if
-      path = trim(adjustl(setting(:mark-1)))
+      path = trim(adjustl(address_text))
       entry%origin = by//shortened(path)
+      if (has_control(path//value)) then
+         call raise(error, error_usage, entry%origin//": found a control character")
+         return
+      end if
       call resolve(case, path, address, message)
       if (allocated(message)) then
          call raise(error, error_usage, entry%origin//": "//message)
@@ -226,10 +248,10 @@ contains
       if (row == 0) row = address%row
       key = catalogue(row)
       if (address%element > 0) key%value_kind = real_key
-      if (len_trim(setting(mark+1:)) == 0) then
+      if (len_trim(value) == 0) then
          message = "there is no value after the equals sign"
       else
-         call convert_text(key, trim(adjustl(setting(mark+1:))), entry, message)
+         call convert_text(key, trim(adjustl(value)), entry, message)
       end if
       if (allocated(message)) then
          call raise(error, error_usage, entry%origin//": "//message)
@@ -244,7 +266,7 @@ contains
       ! counts
       call case%drop_alternative(address, always=.not. present(option))
       call case%set(address, entry)
-   end subroutine override
+   end subroutine set_value
 
    !> Position of the equals sign between path and value; a quoted name may contain one, too
    pure function end_of_path(setting) result(mark)

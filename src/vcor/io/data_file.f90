@@ -14,7 +14,7 @@ module vcor_io_data_file
    use vcor_io_path, only : folder_of, join_path
    use vcor_kinds, only : wp
    use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
-   use vcor_number, only : looks_numeric, read_real, real_text
+   use vcor_number, only : looks_numeric, most_magnitude, read_real, real_text
    use vcor_text, only : has_control, integer_text, lower, printable, shortened
    use vcor_words, only : contains_word
    implicit none
@@ -443,8 +443,6 @@ contains
 
       character(len=*), parameter :: example = ", expected 'frequency [Hz],damping_ratio," &
          //"modal_mass [kg]', or mode_shape [kg^-0.5] in place of the mass"
-      !> Largest modal mass and frequency, whose squares are numbers
-      real(wp), parameter :: largest = 1.0e60_wp
       character(len=:), allocatable :: message
       real(wp), allocatable :: points(:, :)
       integer :: i, j, column(3), rigid
@@ -485,14 +483,14 @@ contains
       points = plain%points(column, :)
       rigid = 0
       do i = 1, size(plain%lines)
-         if (.not. (points(1, i) >= 0.0_wp .and. points(1, i) <= largest)) then
+         if (.not. (points(1, i) >= 0.0_wp .and. points(1, i) <= most_magnitude)) then
             message = 'found '//real_text(points(1, i))//', expected a frequency >= 0'
          else if (.not. (points(2, i) >= 0.0_wp .and. points(2, i) < 1.0_wp)) then
             message = 'found '//real_text(points(2, i))//', expected a damping ratio in [0, 1)'
          else if (.not. is_shape .and. .not. (points(3, i) > 0.0_wp &
-                  .and. points(3, i) <= largest)) then
+                  .and. points(3, i) <= most_magnitude)) then
             message = 'found '//real_text(points(3, i))//', expected a modal mass > 0'
-         else if (.not. abs(points(3, i)) <= largest) then
+         else if (.not. abs(points(3, i)) <= most_magnitude) then
             message = 'found '//real_text(points(3, i))//', expected the shape of a mode, ' &
                //'normalised by its mass'
          else if (.not. points(1, i) > 0.0_wp) then

@@ -35,6 +35,8 @@ module vcor_io_dump
       character(len=:), allocatable :: text
       !> First byte of the next one
       integer :: next = 1
+      !> Whether a field was not there
+      logical :: are_short = .false.
    contains
       procedure :: take, take_number
    end type fields_t
@@ -107,12 +109,14 @@ contains
       !> Folder where the process was when the case was read
       character(len=:), allocatable, intent(out) :: place
       !> Error of code `error_input` if the dump is damaged or of another version, or a data file is
-      !> another one; unallocated on success
+      !> another one, `error_file` if one cannot be read; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(fields_t) :: fields
       type(entry_t) :: entry
-      character(len=:), allocatable :: head, path, source
+      character(len=*), parameter :: damaged = 'the dump of a case is damaged, expected it as ' &
+         //'vcor_dump made it'
+      character(len=:), allocatable :: bytes, head, path, source, text, was
       integer :: group, item, line, mark, row
 
       mark = index(dump, newline)
@@ -127,7 +131,7 @@ contains
       else
          fields%text = dump(len(head) + 2:)
          if (head(mark + 1:) /= hexadecimal(crc32(fields%text, 0_int32))) call raise(error, &
-            error_input, 'the dump of a case is damaged, expected it as vcor_dump made it')
+            error_input, damaged)
       end if
       if (allocated(error)) return
 
@@ -135,12 +139,17 @@ contains
       place = fields%take()
       do item = 1, fields%take_number()
          path = join_path(join_path(place, folder_of(source)), fields%take())
-         if (fields%take() == sum_of(path)) cycle
-         call raise(error, error_input, printable(path)//': it is not the file that it was when ' &
-            //'the case was dumped, expected the same one')
+         was = fields%take()
+         if (fields%are_short) exit
+         if (was == sum_of(path)) cycle
+         call read_text_file(path, bytes, error)
+         if (.not. allocated(error)) call raise(error, error_input, printable(path)//': it is ' &
+            //'not the file that it was when the case was dumped, expected the same one')
          return
       end do
-      call read_case_text(case, fields%take(), source, error)
+      text = fields%take()
+      if (.not. fields%are_short) call read_case_text(case, text, source, error)
+      if (fields%are_short) call raise(error, error_input, damaged)
       if (allocated(error)) return
       do group = 1, size(groups)
          do item = 1, case%count(groups(group)%name)
@@ -154,6 +163,8 @@ contains
             end do
          end do
       end do
+      if (fields%are_short .or. fields%next <= len(fields%text)) &
+         call raise(error, error_input, damaged)
    end subroutine load_case
 
    !> All that is given, also keys that do not belong to the model
@@ -212,15 +223,20 @@ contains
       call buffer%add(integer_text(len(field))//':'//field//newline)
    end subroutine put
 
-   !> Take the next field of a dump whose check sum is right
+   !> Take the next field; a dump whose check sum is right has all of them, unless it is of another
+   !> build of the same version
    function take(self) result(field)
       class(fields_t), intent(inout) :: self
+      !> Empty if there is none
       character(len=:), allocatable :: field
 
       integer :: first, length
 
+      field = ''
       first = self%next + index(self%text(self%next:), ':')
-      read (self%text(self%next:first - 2), *) length
+      length = whole(self%text(self%next:first - 2))
+      self%are_short = self%are_short .or. length < 0 .or. length > len(self%text) - first
+      if (self%are_short) return
       field = self%text(first:first + length - 1)
       self%next = first + length + 1
    end function take
@@ -228,12 +244,26 @@ contains
    !> Take the next field, a whole number
    function take_number(self) result(number)
       class(fields_t), intent(inout) :: self
+      !> 0 if there is none
       integer :: number
 
-      character(len=:), allocatable :: field
-
-      field = self%take()
-      read (field, *) number
+      number = whole(self%take())
+      self%are_short = self%are_short .or. number < 0
+      number = max(number, 0)
    end function take_number
+
+   !> A whole number >= 0
+   pure function whole(text) result(number)
+      character(len=*), intent(in) :: text
+      !> -1 if the text is none
+      integer :: number
+
+      integer :: status
+
+      number = -1
+      if (text == '' .or. len(text) > 9 .or. verify(text, '0123456789') > 0) return
+      read (text, *, iostat=status) number
+      if (status /= 0) number = -1
+   end function whole
 
 end module vcor_io_dump

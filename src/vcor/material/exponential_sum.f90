@@ -2,6 +2,7 @@
 !> set of internal variables
 module vcor_material_exponential_sum
    use vcor_kinds, only : wp
+   use vcor_tuning, only : most_iterations
    implicit none
    private
 
@@ -11,7 +12,8 @@ module vcor_material_exponential_sum
    !> Parts of a window up to which the integrals of a sum and of what it stands for are compared
    real(wp), parameter :: parts(*) = [(real(i_part, wp)/3.0_wp, i_part=1, 3)]
 
-   !> Relative difference up to which two rates are the same but for rounding
+   !> Relative difference up to which two rates are the same but for rounding: 450 times epsilon;
+   !> with 1e-10 no random impact changes
    real(wp), parameter :: same_rate = 1.0e-13_wp
 
    !> E(t) = equilibrium + sum_k moduli(k) exp(-rates(k) t) + viscosity delta(t),
@@ -225,7 +227,6 @@ contains
          !> Distance, > 0
          real(wp) :: distance
 
-         integer, parameter :: most_iterations = 200
          real(wp) :: lower, upper, others, slope, g, next, difference(size(pole)), term(size(pole))
          integer :: iteration
 

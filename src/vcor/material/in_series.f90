@@ -113,7 +113,8 @@ contains
       type(prony_t), intent(out) :: prony
       type(error_t), allocatable, intent(out) :: error
 
-      ! moduli divided by the glassy modulus that are too small to matter
+      ! moduli divided by the glassy one that are rounding: squares of parts that cancel, eps^2 =
+      ! 5e-32
       real(wp), parameter :: nothing = 1.0e-30_wp
       type(exponential_sum_t) :: both
       real(wp), allocatable :: pole(:), weight(:), offset(:), of_a(:), of_b(:), distance(:)

@@ -7,7 +7,7 @@ module vcor_material_mittag_leffler
    use vcor_material_type, only : check_values, equilibrium_modulus, parameter_t, poisson_ratio, &
       relaxing_modulus
    use vcor_number, only : interval_t, positive
-   use vcor_material_spectrum, only : fractional_t
+   use vcor_material_spectrum, only : farthest_rate, fractional_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
    implicit none
    private
@@ -139,15 +139,13 @@ contains
       !> Spectrum per logarithm of the rate [Pa]
       real(wp) :: density
 
-      ! the spectrum is zero long before sinh overflows
-      real(wp), parameter :: far = 600.0_wp
       real(wp) :: phi
 
       associate (not_needed => rate)
       end associate
       phi = pi*(1.0_wp - self%exponent)
       density = 0.25_wp*self%relaxing/pi*sin(phi) &
-         /(sinh(0.5_wp*self%exponent*min(abs(beyond_peak), far))**2 + sin(0.5_wp*phi)**2)
+         /(sinh(0.5_wp*self%exponent*min(abs(beyond_peak), farthest_rate))**2 + sin(0.5_wp*phi)**2)
    end function spectrum
 
    !> Complex modulus E_0 + E_1 p/(1 + p) with p = (s tau)^a = q exp(i phi)

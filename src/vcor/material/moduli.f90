@@ -12,6 +12,8 @@ module vcor_material_moduli
    public :: moduli_t, curves_t, time_range_t
    public :: compute_moduli, sampled_times, usual_range, loss_tangent
 
+   ! The range that is shown is a choice: it has to contain the contact and, if near, the plateaus
+
    !> Points per decade by default
    integer, parameter :: per_decade = 50
    !> Fewest decades shown before and after the contact time

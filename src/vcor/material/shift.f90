@@ -39,7 +39,8 @@ module vcor_material_shift
       'shift_file', 'vertical_shift', 'valid_temperature_from', 'valid_temperature_to']
    !> The first so many keys are required by the laws to which they belong
    integer, parameter :: keys_needed = size(shift_parameters) + 1
-   !> Temperature below which a number is probably one in degrees Celsius [K]
+   !> Temperature below which a number is probably one in degrees Celsius [K]: all polymers are
+   !> glasses there, and few are used above 100 C
    real(wp), parameter :: coldest = 100.0_wp
    !> Laws to which each key belongs
    character(len=*), parameter :: key_laws(*) = [character(len=len(shift_laws)) :: shift_laws, &
@@ -91,7 +92,7 @@ contains
       !> Error of code `error_input` where the law does not hold, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      ! largest |log10 a_T|: no computation is possible beyond
+      ! largest |log10 a_T|: squares of rates, at most 1e60 of the case times this, are then numbers
       real(wp), parameter :: farthest = 60.0_wp
       ! long enough for any two finite numbers
       character(len=640) :: reach

@@ -23,7 +23,8 @@ module vcor_material_table
    !> Parameters of model `table`, besides its points
    type(parameter_t), parameter :: table_parameters(*) = [poisson_ratio]
 
-   !> Relative growth of the modulus between two points that counts as rounding
+   !> Relative growth of the modulus between two points that counts as rounding: of files with ten
+   !> digits
    real(wp), parameter :: modulus_rounding = 1.0e-10_wp
    !> Smallest time [s] and modulus [Pa]; outside these bounds products may over- or underflow
    real(wp), parameter :: smallest_value = 1.0e-30_wp
@@ -81,7 +82,8 @@ contains
       real(wp), intent(in) :: moduli(:)
       type(error_t), allocatable, intent(out) :: error
 
-      ! relative difference below which the logarithms of two times could not be told apart
+      ! relative difference below which the logarithms of two times could not be told apart: these
+      ! are at most 69, with a rounding error of 1.4e-14
       real(wp), parameter :: rounding = 1.0e-12_wp
       real(wp) :: falling(size(moduli))
       integer :: i, n

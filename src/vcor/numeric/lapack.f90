@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgetrs, dorgqr, dormqr, dpotrf, dtrtrs
+   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgetrs, dorgqr, dpotrf, dtrtrs
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -150,37 +150,6 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dorgqr
-
-      !> Multiply a matrix by the orthogonal matrix Q of a QR factorisation
-      pure subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
-         import :: wp
-         !> 'L': from the left, 'R': from the right
-         character(len=1), intent(in) :: side
-         !> 'N': by Q, 'T': by its transpose
-         character(len=1), intent(in) :: trans
-         !> Number of rows of `c`
-         integer, intent(in) :: m
-         !> Number of columns of `c`
-         integer, intent(in) :: n
-         !> Number of reflections
-         integer, intent(in) :: k
-         !> Leading dimension of `a`
-         integer, intent(in) :: lda
-         !> The reflections as `dgeqrf` leaves them, shape (lda, k)
-         real(wp), intent(in) :: a(lda, *)
-         !> Their scalars, shape (k)
-         real(wp), intent(in) :: tau(*)
-         !> Leading dimension of `c`
-         integer, intent(in) :: ldc
-         !> The matrix, on return the product, shape (ldc, n)
-         real(wp), intent(inout) :: c(ldc, *)
-         !> Work space, shape (lwork)
-         real(wp), intent(out) :: work(*)
-         !> Length of the work space, >= n for 'L', >= m for 'R'
-         integer, intent(in) :: lwork
-         !> 0 on success
-         integer, intent(out) :: info
-      end subroutine dormqr
 
       !> Cholesky factor of a symmetric positive definite matrix
       pure subroutine dpotrf(uplo, n, a, lda, info)

@@ -6,11 +6,9 @@
 !>
 !>     E_{a,b}(-u) = 1/(2 pi i) int exp(w) w^(a-b)/(w^a + u) dw.
 !>
-!> On the parabola w = mu (1 + i y)^2 the integrand is analytic for |Im y| < 1 and falls like
-!> exp(-mu y^2), so the midpoint rule converges exponentially, whatever u: see Weideman and
-!> Trefethen, Math. Comp. 76 (2007) 1341, and for these functions Garrappa, SIAM J. Numer. Anal. 53
-!> (2015) 1350. The nodes w do not depend on u, so their powers and exponentials are computed once.
-!> The nodes below the axis are conjugates of those above and are left out.
+!> With the rule of `vcor_numeric_contour` the integral converges exponentially, whatever u: see for
+!> these functions Garrappa, SIAM J. Numer. Anal. 53 (2015) 1350. The nodes w do not depend on u, so
+!> their powers and exponentials are computed once.
 !>
 !> Evaluated directly, the integral loses digits for large u, where E_{a,1}(-u) ~ 1/(u Gamma(1 - a))
 !> is small for a near 1. What cancels is the integrand for a = 1, whose integral is known:
@@ -20,19 +18,12 @@
 !> The bracket is u (w^(a-1) - 1)/((w^a + u)(w + u)), in which w^(a-1) - 1, of the order of 1 - a,
 !> is computed without a difference.
 module vcor_numeric_mittag_leffler
-   use vcor_kinds, only : pi, wp
+   use vcor_kinds, only : wp
+   use vcor_numeric_contour, only : contour_rule, n => contour_nodes
    implicit none
    private
 
    public :: mittag_leffler_rule_t, new_mittag_leffler_rule
-
-   !> Number of nodes above the axis
-   integer, parameter :: n = 26
-   !> Step of the nodes in y: the error of the rule is exp(-2 pi/step) = 6e-19, times 1e3 at most
-   real(wp), parameter :: step = 0.15_wp
-   !> Vertex of the parabola: exp(w) is exp(-36.8) at the last node, and the largest term is only
-   !> four times the sum
-   real(wp), parameter :: mu = 2.6_wp
 
    !> Rule for one exponent a
    type :: mittag_leffler_rule_t
@@ -63,24 +54,21 @@ contains
       real(wp), intent(in) :: exponent
       type(mittag_leffler_rule_t) :: self
 
-      complex(wp) :: root, w, weight, half, power, difference
+      complex(wp) :: w(n), weight(n), half, power, difference
       integer :: k
 
       self%exponent = exponent
+      call contour_rule(w, weight)
       do k = 1, n
-         root = cmplx(1.0_wp, step*(real(k, wp) - 0.5_wp), wp)
-         w = mu*root**2
-         ! dw = 2 i mu (1 + i y) dy, and 1/(2 pi i) of a conjugate pair is Im(..)/pi
-         weight = step/pi*exp(w)*2.0_wp*mu*root*(0.0_wp, 1.0_wp)
-         power = exp(exponent*log(w))
+         power = exp(exponent*log(w(k)))
          ! exp(2 z) - 1 = 2 sinh(z) exp(z)
-         half = -0.5_wp*(1.0_wp - exponent)*log(w)
+         half = -0.5_wp*(1.0_wp - exponent)*log(w(k))
          difference = 2.0_wp*sinh(half)*exp(half)
-         self%w(k, :) = parts(w)
+         self%w(k, :) = parts(w(k))
          self%power(k, :) = parts(power)
-         self%product(k, :) = parts(w*power)
-         self%weight(k, :) = parts(weight*difference)
-         self%mean_weight(k, :) = parts(weight*power/w**2)
+         self%product(k, :) = parts(w(k)*power)
+         self%weight(k, :) = parts(weight(k)*difference)
+         self%mean_weight(k, :) = parts(weight(k)*power/w(k)**2)
       end do
    end function new_mittag_leffler_rule
 

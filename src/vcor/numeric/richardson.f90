@@ -5,7 +5,11 @@ module vcor_numeric_richardson
    implicit none
    private
 
-   public :: richardson_t, richardson
+   public :: richardson_t, richardson, best_ratio
+
+   !> Largest ratio of the errors of two levels that is believed: 2^3, since methods of second order
+   !> may be of third by chance or by extrapolation
+   real(wp), parameter :: best_ratio = 8.0_wp
 
    !> What three values show
    type :: richardson_t
@@ -20,7 +24,8 @@ module vcor_numeric_richardson
 contains
 
    !> Extrapolate. The limit is taken with the observed order, limited to `lowest` and `highest`,
-   !> beyond which it is chance. The error is taken with the observed order limited to 1 and 2,
+   !> the orders of singularities and methods: beyond it is chance. The error is taken with the
+   !> observed order limited to 1 and 2, ratios of `linear` and `square`,
    !> times P. J. Roache's safety factor for three grids, J. Fluids Eng. 116 (1994) 405,
    !> doi:10.1115/1.2910291, and is at least what the first difference gives with order 2, as the
    !> last two values may agree by chance. Without monotone convergence it is the last difference,
@@ -31,7 +36,7 @@ contains
       !> Order, limit and error
       type(richardson_t) :: found
 
-      real(wp), parameter :: lowest = 0.5_wp, highest = 4.0_wp, best_ratio = 8.0_wp
+      real(wp), parameter :: lowest = 0.5_wp, highest = 4.0_wp
       real(wp), parameter :: linear = 2.0_wp, square = 4.0_wp, safety = 1.25_wp
       real(wp) :: first, second, ratio, order
 

@@ -116,6 +116,7 @@ contains
       real(wp), contiguous, intent(in) :: b(:)
       real(wp) :: product
 
+      ! four registers of four numbers hide the latency of four additions
       integer, parameter :: lanes = 16
       real(wp) :: partial(lanes)
       integer :: i, n

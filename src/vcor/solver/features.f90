@@ -233,9 +233,16 @@ module vcor_solver_features
       unread_t([paper, 0, 0], 0, 'impact', 'gravity', &
       "adams_bashforth marches the paper's wave equation, without a weight")]
 
+   integer :: l
+   !> Whether no row of the tables excludes a feature for a method, shape (methods, features)
+   logical, parameter :: solved(*, *) = reshape([((.not. (any(refusals%feature == l .and. &
+      (refusals%by(1) == k .or. refusals%by(2) == k .or. refusals%by(3) == k)) &
+      .or. any(own_rules%feature == l .and. own_rules%method == k)), &
+      k=1, size(methods)), l=1, size(features))], [size(methods), size(features)])
+
 contains
 
-   !> Whether no row of the table excludes a feature for a method
+   !> Whether a method solves a feature
    pure function solves(method, feature)
       !> Its place in `methods`
       integer, intent(in) :: method
@@ -243,14 +250,7 @@ contains
       integer, intent(in) :: feature
       logical :: solves
 
-      integer :: i
-
-      ! for each point of a sweep: an array of all rows would take a fortieth of its time
-      solves = .not. any(own_rules%feature == feature .and. own_rules%method == method)
-      do i = 1, size(refusals)
-         if (refusals(i)%feature /= feature) cycle
-         if (any(refusals(i)%by == method)) solves = .false.
-      end do
+      solves = solved(method, feature)
    end function solves
 
    !> Whether a method reads a key

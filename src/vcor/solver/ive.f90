@@ -7,13 +7,12 @@
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_impulse, col_time, col_velocity, contact_separated, &
-      trajectory_t
+   use vcor_impact_trajectory, only : col_time, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_dense, only : width
    use vcor_numeric_radau_rule, only : bridge_t, new_bridge, new_rule, rule_t
    use vcor_solver_features, only : ive, refuse_features
-   use vcor_solver_ive_course, only : of_cor, of_cor_sphere, of_force, of_time
+   use vcor_solver_ive_errors, only : errors_of_sums, largest, of_force, state_errors
    use vcor_solver_ive_lags, only : sums_t
    use vcor_solver_ive_march, only : follow
    use vcor_solver_type, only : default_accuracy, features_of, solver_settings_t, solver_t
@@ -84,6 +83,7 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! with two, 109 random impacts are the same
       integer, parameter :: most = 4
       type(effort_t) :: effort
       type(trajectory_t) :: other
@@ -125,7 +125,7 @@ contains
       worst = 0.0_wp
       time_scale = impact%time_scale()
       end_time = self%settings%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
+      if (.not. end_time > 0.0_wp) end_time = impact%lasting_time(time_scale)
       do
          call find_sums(impact, effort%window, effort%sums*self%accuracy, sums, error)
          if (allocated(error)) return
@@ -145,36 +145,29 @@ contains
       trajectory%kernel_error = sums%contact%error
       if (trajectory%status /= contact_separated) return
       of_sums = errors_of_sums(impact, sums, trajectory)
-      ! with what the ringing of a structure adds
-      trajectory%cor_error = trajectory%cor_error + of_march(of_cor) + of_sums(of_cor)
-      trajectory%cor_sphere_error = trajectory%cor_sphere_error + of_march(of_cor_sphere) &
-         + of_sums(of_cor_sphere)
-      trajectory%contact_time_error = trajectory%contact_time_error + of_march(of_time) &
-         + of_sums(of_time)
-      trajectory%max_force_error = trajectory%max_force_error + of_march(of_force) &
-         + of_sums(of_force)
-      worst = largest(trajectory, of_march + of_sums)
-      if (largest(trajectory, of_sums) > 0.5_wp*worst) then
+      call state_errors(trajectory, of_march)
+      call state_errors(trajectory, of_sums)
+      worst = worst_of(of_march + of_sums)
+      if (worst_of(of_sums) > 0.5_wp*worst) then
          effort%sums = 0.1_wp*effort%sums*min(1.0_wp, self%accuracy/worst)
          effort%window = sum_window*trajectory%state(col_time, trajectory%last)
       else
          effort%march = 0.1_wp*effort%march
       end if
+
+   contains
+
+      !> The largest of some errors
+      pure function worst_of(errors)
+         !> Errors of the results
+         real(wp), intent(in) :: errors(4)
+         !> Error [-]
+         real(wp) :: worst_of
+
+         worst_of = max(largest(errors, trajectory%state(col_time, trajectory%last)), &
+            errors(of_force)/trajectory%max_force)
+      end function worst_of
    end subroutine attempt
-
-   !> The largest of the errors; that of the contact time, which moves by several times what the
-   !> velocities do, may be twice as large, relative
-   pure function largest(trajectory, errors)
-      type(trajectory_t), intent(in) :: trajectory
-      !> Errors of the results, see `course_t`
-      real(wp), intent(in) :: errors(4)
-      !> Error [-]
-      real(wp) :: largest
-
-      largest = max(errors(of_cor), errors(of_cor_sphere), &
-         0.5_wp*errors(of_time)/trajectory%state(col_time, trajectory%last), &
-         errors(of_force)/trajectory%max_force)
-   end function largest
 
    !> Find the sums of exponentials of contact and plate
    subroutine find_sums(impact, window, accuracy, sums, error)
@@ -202,49 +195,5 @@ contains
       if (.not. sums%plate%error < 1.0_wp) call raise(error, error_numerical, 'no sum of ' &
          //'exponentials represents the memory of this plate: use another plate.waves')
    end subroutine find_sums
-
-   !> Errors of the results by those of the sums. The velocities have the error of the sum for the
-   !> contact, or that of the kernel's integral up to the largest force times the share of the
-   !> momentum taken by then, if larger: heavy losses may end the loading early in the window. The
-   !> velocity of a plate is at most that of the impact, and is off by the error of its memory. An
-   !> error of the velocities moves the end of the contact, the more the slower the separation. The
-   !> largest force F = int k u' dx has the error of the integral: the total variation of u' is
-   !> some three times u over the time
-   pure function errors_of_sums(impact, sums, trajectory) result(errors)
-      type(impact_t), intent(in) :: impact
-      type(sums_t), intent(in) :: sums
-      type(trajectory_t), intent(in) :: trajectory
-      !> Errors of cor, cor_sphere [-], contact time [s] and largest force [N]
-      real(wp) :: errors(4)
-
-      real(wp), parameter :: variation = 3.0_wp
-      real(wp) :: of_kernel, of_integral, of_plate, of_velocity
-      integer :: node
-
-      of_kernel = sums%contact%error
-      of_integral = 0.0_wp
-      if (of_kernel > 0.0_wp) then
-         associate (t => trajectory%time_of_max_force)
-            if (t > 0.0_wp) of_integral = abs(sums%contact%integral(t) &
-               /(impact%kernel_integral(t) + impact%kernel_viscosity()) - 1.0_wp)
-            do node = 1, trajectory%last - 1
-               if (trajectory%state(col_time, node) >= t) exit
-            end do
-         end associate
-         of_kernel = max(of_kernel, of_integral*trajectory%state(col_impulse, node) &
-            /(impact%mass*impact%velocity))
-      end if
-      associate (last => trajectory%state(:, trajectory%last))
-         of_plate = 0.0_wp
-         if (impact%target%hereditary()) of_plate = max(sums%plate%error, &
-            abs(sums%plate%integral(last(col_time))/(impact%target%alpha(0.0_wp) &
-            + impact%target%memory_integral(last(col_time))) - 1.0_wp))
-         if (allocated(sums%vibration)) of_plate = sums%vibration%error
-         of_velocity = of_kernel + of_plate
-         errors(of_cor:of_cor_sphere) = of_velocity
-         errors(of_time) = of_velocity*last(col_time)*impact%velocity/abs(last(col_velocity))
-         errors(of_force) = (of_velocity + variation*of_integral)*trajectory%max_force
-      end associate
-   end function errors_of_sums
 
 end module vcor_solver_ive

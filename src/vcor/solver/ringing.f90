@@ -64,7 +64,7 @@ contains
       !> Velocity below which the ringing need not be known [m/s]
       real(wp), intent(in) :: least
 
-      ! deviations that are next to impossible
+      ! standard deviations of a sum of random phases, which three in a thousand exceed
       real(wp), parameter :: deviations = 3.0_wp
       real(wp) :: yield(vibration%modes() + 1)
       integer :: n, total
@@ -167,7 +167,8 @@ contains
       !> Duration [s]
       real(wp), intent(out) :: duration
 
-      ! ratio of the bounds between which it lies
+      ! ratio of the bounds between which it lies: a panel is at most so much shorter than it may
+      ! be; with 1.3 one of 18 random impacts changes
       real(wp), parameter :: ratio = 1.1_wp
       real(wp) :: shorter, longer
 

@@ -41,6 +41,7 @@ module vcor_sweep_points
    private
 
    public :: sweep_t, new_sweep, worker_t, solve_point
+   public :: put_numbers, solve_numbers, name_reason, without_result
    public :: failure_t, failures_t, solve_sweep, solve_points, monitor_t
    public :: default_threads, most_threads, clock
 
@@ -77,11 +78,13 @@ module vcor_sweep_points
    !> Target time of a round [s]: a killed process loses no more, and it is long against the time in
    !> which ranks and threads wait for each other at its end
    real(wp), parameter :: round_time = 0.2_wp
-   !> Minimum points of a round per thread, so that threads end at about the same time
+   !> Minimum points of a round per thread, so that threads end at about the same time: one of four
+   !> points that takes twice as long keeps the others waiting for a fifth of the round
    integer, parameter :: min_points = 4
-   !> Largest ratio of the length of a round to the one before
+   !> Largest ratio of the length of a round to the one before, as the first points may be untypical
    integer, parameter :: growth = 4
-   !> Largest number of points that a thread takes at once
+   !> Largest number of points that a thread takes at once: 16 thin impacts take a millisecond,
+   !> beside which taking them costs nothing
    integer, parameter :: longest_chunk = 16
 
    !> Largest number of threads of a process
@@ -211,30 +214,58 @@ contains
       !> another code if the solution fails; unallocated on success, even without separation
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: value
+      real(wp) :: numbers(size(self%grid%axes))
       integer :: i, place(size(self%grid%axes))
+
+      place = self%grid%places(point)
+      do i = 1, size(place)
+         numbers(i) = self%grid%axes(i)%values(place(i))
+      end do
+      call put_numbers(self, numbers, worker, error)
+      call solve_numbers(worker, outcome, error)
+   end subroutine solve_point
+
+   !> Put the numbers of a point in the place of those before
+   subroutine put_numbers(self, numbers, worker, error)
+      type(sweep_t), intent(in) :: self
+      !> A number for each axis, shape (axes)
+      real(wp), intent(in) :: numbers(:)
+      !> Working storage of the thread: a new one, or that of an earlier point
+      type(worker_t), intent(inout) :: worker
+      !> Error of code `error_input` if one is out of range; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
 
       if (.not. worker%is_ready) then
          worker%inputs = self%problem%inputs
          worker%problem = self%problem
          worker%is_ready = .true.
       end if
-      place = self%grid%places(point)
-      do i = 1, size(place)
-         value = self%grid%axes(i)%values(place(i))
-         if (contains_number(self%ranges(i), value)) then
-            call worker%inputs%put(self%quantities(i), value)
+      do i = 1, size(numbers)
+         if (contains_number(self%ranges(i), numbers(i))) then
+            call worker%inputs%put(self%quantities(i), numbers(i))
          else if (.not. allocated(error)) then
             call raise(error, error_input, self%objections(i)%message)
          end if
       end do
+   end subroutine put_numbers
+
+   !> Solve the point of the numbers that were put
+   subroutine solve_numbers(worker, outcome, error)
+      type(worker_t), intent(inout) :: worker
+      !> Outcome; without numbers on failure
+      type(outcome_t), intent(out) :: outcome
+      !> Error of the numbers, which is kept; on return as that of `solve_point`
+      type(error_t), allocatable, intent(inout) :: error
+
       if (.not. allocated(error)) call worker%problem%build(worker%inputs, error)
       if (.not. allocated(error)) call worker%problem%solve(worker%trajectory, &
          outcome, error)
       if (.not. allocated(error)) return
       outcome = outcome_t(status=merge(point_invalid, point_failed, error%code == error_input), &
          steps=outcome%steps)
-   end subroutine solve_point
+   end subroutine solve_numbers
 
    !> Default number of threads: the cores that the process may use, or OMP_NUM_THREADS of the
    !> environment
@@ -441,21 +472,34 @@ contains
       type(outcome_t) :: outcome
       type(error_t), allocatable :: trouble
 
-      select case (kind%status)
-      case (contact_lasting)
-         kind%message = 'the bodies do not separate within solver.end_time'
-         associate (problem => sweep%problem)
-            if (problem%surroundings%is_lighter(problem%impact)) kind%message = &
-               'the bodies do not separate: '//forgotten_base
-         end associate
-      case (contact_sticking)
-         kind%message = 'the sphere sticks: all motion decays in contact'
-      case default
+      if (any(kind%status == [point_invalid, point_failed])) &
          call solve_point(sweep, kind%first, worker, outcome, trouble)
-         kind%message = 'no result'
-         if (allocated(trouble)) kind%message = trouble%message
-      end select
+      call name_reason(sweep%problem, kind%status, trouble, kind%message)
    end subroutine explain
+
+   !> Why an impact has no result
+   pure subroutine name_reason(problem, status, error, message)
+      !> The impact, or one like it
+      type(problem_t), intent(in) :: problem
+      !> One of `without_result`
+      integer, intent(in) :: status
+      !> Error of an impact that is invalid or failed
+      type(error_t), allocatable, intent(in) :: error
+      !> In words
+      character(len=:), allocatable, intent(out) :: message
+
+      select case (status)
+      case (contact_lasting)
+         message = 'the bodies do not separate within solver.end_time'
+         if (problem%surroundings%is_lighter(problem%impact)) message = &
+            'the bodies do not separate: '//forgotten_base
+      case (contact_sticking)
+         message = 'the sphere sticks: all motion decays in contact'
+      case default
+         message = 'no result'
+         if (allocated(error)) message = error%message
+      end select
+   end subroutine name_reason
 
    !> Wall-clock time
    function clock() result(time)

@@ -158,7 +158,8 @@ contains
       !> Why that cannot be; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      ! mass of what moves with the dashpot, over that of the sphere
+      ! mass of what moves with the dashpot, over that of the sphere: it changes the restitution by
+      ! as much
       real(wp), parameter :: light = 1.0e-6_wp
       class(material_t), allocatable :: material
 

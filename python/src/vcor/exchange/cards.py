@@ -86,9 +86,11 @@ def card(
     case.text()  # checks it
 
     def of(key: str) -> float:
+        """A number of the material, 0 if it has none."""
         return number(case, f"{material}.{key}", 0.0)
 
     def series(key: str) -> list[float]:
+        """A list of numbers of the material, empty if it has none."""
         return list(np.atleast_1d(case[f"{material}.{key}"] or ()))
 
     model = str(case[f"{material}.model"])

@@ -103,6 +103,7 @@ class Law:
             return np.minimum(e, 1.0)
 
         def balance(x: float) -> float:
+            """Sum of the largest misfits above and below, 0 at the best place."""
             misfit = restitution(x) - cor
             return float(misfit.max() + misfit.min())
 

@@ -216,6 +216,7 @@ def _hidden(fit: Fit) -> list[str]:
 
 
 def _title(fit: Fit) -> str:
+    """Name of a fitted model, with its number of terms if it has any."""
     n = fit.parameters[-1].term
     return fit.model + (f", {n} term{'s' * (n > 1)}" if n else "")
 

@@ -199,7 +199,9 @@ def _decoded(name: str, raw: bytes) -> str:
         except UnicodeDecodeError:
             continue
         head = [line for line in text.splitlines()[:200] if not line.isascii()]
-        cells = [cell for line in head for cell in re.split(r"[;,\t#]", line)]
+        # names may stand between blanks, and have some within
+        ways = (r"[;,\t#]|  +", r"\s+")
+        cells = [cell for line in head for way in ways for cell in re.split(way, line)]
         texts.append((sum(bool(read_head(cell).name) for cell in cells), -len(texts), text))
     return max(texts)[2]
 
@@ -312,6 +314,7 @@ def separator_of(lines: list[str]) -> str:
         lines = [*lines[: _SEEN // 2], *lines[-_SEEN // 2 :]]
 
     def numbers(mark: str) -> int:
+        """Cells that become numbers with a mark, in lines with several."""
         counts = [sum(map(is_number, split_line(line, mark))) for line in lines]
         return sum(count for count in counts if count > 1)
 

@@ -72,7 +72,7 @@ KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_te
 
 
 class Identification(Identified):
-    """What the data say about the parameters.
+    """Parameters identified from data, with their errors.
 
     `str` gives the report that the command prints.
     """
@@ -234,7 +234,7 @@ def _beside_guess(best: Fit) -> Fit:
 def _result(
     problem: Problem, best: Fit, limits: list[list[Interval]], model: str, given: Case
 ) -> Identification:
-    """What the fit says, with the given case completed by what it found."""
+    """Results of a fit, with the given case completed by the values found."""
     x, chi2, derivatives = best.x, best.chi2, best.slopes
     case, free, dof = problem.case, problem.free, problem.dof
     predicted = problem.predict(x[None])[0]
@@ -298,7 +298,7 @@ def _result(
 
 
 def _of_correction(made: Any) -> dict[str, Any]:
-    """What is said of a correction of impacts."""
+    """Sentence about a correction of impacts."""
     if not isinstance(made, Corrected):
         return {}
     return {"solved": made.solved, "fresh": made.fresh, "correction": made.error}
@@ -353,6 +353,7 @@ def _band(problem: Problem, x: Floats, covariance: Floats) -> dict[str, list[flo
     trial = probe(problem.case, grid, name)
 
     def cor(steps: Floats) -> Floats:
+        """Coefficients at the velocities of the grid, shape (points, grid), for steps from x."""
         return trial.predict(problem.quick, problem.free, np.exp(x + steps), np.exp(x))
 
     slope = slopes(cor, len(x), STEP)
@@ -391,6 +392,7 @@ def _tangents(problem: Problem, x: Floats, covariance: Floats) -> Iterator[Tange
         def results(
             steps: Floats, model: Case = problem.quick, block: Impacts = block, i: int = i
         ) -> Floats:
+            """Loss tangent and contact time of one impact, shape (points, 2), for steps from x."""
             values, names = np.exp(x + steps), ["peak_loss_tangent", "contact_time"]
             found = block.quantities(model, free, values, names, np.array([i]), np.exp(x))
             return found[:, 0]
@@ -487,6 +489,11 @@ def _parser() -> _command.Parser:
 
 
 def _work(options: argparse.Namespace) -> None:
+    """Run the command `vcor identify`: report, figure and files of what is identified.
+
+    Of several models the one with the least AIC is written, and all are compared.
+    Raises UsageError without free parameters, and NumericalError if no model has a result.
+    """
     if options.free is None:
         raise UsageError("expected --free ADDRESS,ADDRESS, the parameters to be identified")
     free = [word.strip() for word in options.free.split(",") if word.strip()]

@@ -61,6 +61,10 @@ class Corrected:
     """Thin mechanics, corrected, in the place of exact ones for the impacts of a problem."""
 
     def __init__(self, problem: Problem, thin: Case) -> None:
+        """Begin without exact impacts.
+
+        `problem` has the data and its impacts, and `thin` is its case by thin mechanics.
+        """
         self.problem, self.thin = problem, thin
         self.blocks = problem.impacts
         #: Numbers of data of the blocks

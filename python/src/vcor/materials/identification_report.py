@@ -29,7 +29,7 @@ _ACROSS = {
 
 
 def report(found: Identified) -> str:
-    """What the command prints."""
+    """Report that the command prints."""
     lines = [
         f"{len(found.data)} data of {', '.join(dict.fromkeys(r['source'] for r in found.data))}",
         *found.taken,

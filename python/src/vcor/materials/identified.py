@@ -1,4 +1,4 @@
-"""What an identification finds: parameters, their errors, and what the data say of the model."""
+"""Results of an identification: parameters, their errors, and a verdict on the model."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .. import _text
 from .._library import Floats
 from ..case import Case
 
-#: What is said of a datum
+#: Remark on a datum
 DATUM = ("source", "quantity", "at", "temperature", "value", "sigma", "model", "residual")
 
 
@@ -46,7 +46,7 @@ class Tangent:
 
 @dataclass(frozen=True)
 class Identified:
-    """What the data say about the parameters."""
+    """Parameters with their errors, and the data."""
 
     case: Case
     estimates: tuple[Estimate, ...]

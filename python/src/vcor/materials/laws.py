@@ -405,6 +405,7 @@ def _end(
     enough = squares + REACH**2 * variance
 
     def place(step: float) -> float:
+        """The number at a distance from the best one."""
         return float(max(0.0, best + side * step) if unit > 0 else best * math.exp(side * step))
 
     def rise(step: float) -> float:

@@ -43,6 +43,7 @@ class Better(Exception):  # noqa: N818
     """A profile has found a better fit than the one it began at."""
 
     def __init__(self, x: Floats) -> None:
+        """Begin with the logarithms of the better parameters, shape (parameters,)."""
         super().__init__()
         self.x = x
 
@@ -112,6 +113,7 @@ class Fit:
         return self.found[i, *held]
 
     def _intervals(self, i: int, held: Sequence[int]) -> list[Interval]:
+        """The intervals by profiles on both sides, with the widths of the levels in deviations."""
         estimated, dof = self.problem.noise.estimated, self.problem.dof
         halves = [(1 + level) / 2 for level in LEVELS]
         widths = [float(stdtrit(dof, one) if estimated else ndtri(one)) for one in halves]

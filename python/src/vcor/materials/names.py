@@ -142,6 +142,7 @@ def plain(text: str) -> str:
 
 
 def _primed(text: str) -> str:
+    """A text with the primes of moduli in one spelling."""
     text = unicodedata.normalize("NFKC", text)
     return re.sub("[’′`´‘]", "'", re.sub('[″”"]', "''", text))
 

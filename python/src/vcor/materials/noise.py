@@ -81,6 +81,7 @@ class Noise:
         """Scatter with which the sum of (misfit/sigma)^2 is as expected; 0 if the floor is more."""
 
         def excess(scatter: float) -> float:
+            """Sum of (misfit/sigma)^2 less the expected one."""
             return float(np.sum((misfit / self.sigma(scatter, model)) ** 2)) - expected
 
         most = float(np.linalg.norm(misfit / self._scale)) / math.sqrt(expected)

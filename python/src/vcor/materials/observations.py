@@ -417,12 +417,11 @@ class Moduli:
     def _moduli(self, case: Case) -> Floats:
         """Moduli of a case, which is changed."""
         found = np.empty(len(self.points), dtype=complex)
-        # one for all temperatures, as a new one asks the library whether the case has it
-        material = case.material(self.material)
-        read = material.complex_modulus if self.dynamic else material.relaxation
         for temperature, where in self.groups.items():
             if math.isfinite(temperature):
                 case["impact.temperature"] = temperature
+            material = case.material(self.material)
+            read = material.complex_modulus if self.dynamic else material.relaxation
             found[where] = read(self.points[where])
         return np.concatenate([found.real, found.imag]) if self.dynamic else found.real
 
@@ -508,11 +507,13 @@ def _as_velocities(
     digits: dict[str, Floats] = {}
 
     def put(name: str, value: Floats, sigma: Floats, digit: Floats) -> None:
+        """Set a column, its scatter where one is given, and the unit of its last digit."""
         columns[name], digits[name] = value, digit
         if not np.isnan(sigma).all():
             columns[f"{name}_sigma"] = sigma
 
     def take(name: str) -> tuple[Floats, Floats]:
+        """Remove a column and its scatter, nan where none is given."""
         sigma = _sigma(columns, name)
         columns.pop(f"{name}_sigma", None)
         return columns.pop(name), sigma

@@ -180,6 +180,7 @@ class Problem:
         """Derivatives of logarithms of quantities, shape (impacts and names, parameters)."""
 
         def logarithms(steps: Floats) -> Floats:
+            """Logarithms of the quantities, shape (points, impacts and names), for steps from x."""
             found = probe.quantities(
                 self.quick, self.free, np.exp(x + steps), list(names), middle=np.exp(x)
             )
@@ -216,6 +217,7 @@ class Problem:
         x[which] = np.clip(x, low + 1e-6, high - 1e-6)[which]
 
         def full(part: Floats) -> Floats:
+            """All parameters, with some of them replaced."""
             x[which] = part
             return x
 

@@ -163,6 +163,7 @@ def _step(cold: Curve, warm: Curve, vertical: bool) -> Step:
         return squares
 
     def misfit(shift: float) -> float:
+        """Sum of squares for one shift."""
         return float(misfits(np.array([shift]))[0])
 
     # a warmer material is faster: its curve belongs to lower frequencies of the colder one, or to
@@ -326,6 +327,7 @@ def laws_of(temperatures: Floats, steps: Floats, errors: Floats, reference: floa
         shifts = _Shifts(start, temperatures, reference)
 
         def misfit(x: Floats, start: dict[str, float] = start, shifts: _Shifts = shifts) -> Floats:
+            """Residuals of the steps between temperatures, over their errors, for logarithms x."""
             law = np.diff(shifts(dict(zip(start, np.exp(x).tolist(), strict=True))))
             found: Floats = ((law - steps) / errors)[seen]
             return found

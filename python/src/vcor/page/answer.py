@@ -7,7 +7,7 @@ computes them can leave what nobody waits for any more.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from ctypes import byref, c_double, c_void_p
+from ctypes import byref, c_double
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,8 +96,7 @@ def parts(case: Case, span: Span | None, others: Sequence[Case]) -> Iterator[Ans
     """
     made = Answer()
     try:
-        made.numbers = _numbers(case)
-        made.remarks = _remarks(case, made.numbers)
+        made.numbers, made.remarks = _numbers(case)
         made.drop = drop_of(case, []).get("factor", np.nan)
     except Error as error:
         made.fault, made.code = str(error), error.code
@@ -141,28 +140,21 @@ def sentence(numbers: Mapping[str, float | str]) -> tuple[str, str]:
 # The thread of a page gives no warnings: filters of warnings are those of the whole process
 
 
-def _numbers(case: Case) -> dict[str, float | str]:
-    """All columns of the summary."""
+def _numbers(case: Case) -> tuple[dict[str, float | str], list[str]]:
+    """All columns of the summary; numbers in another unit, and what the data do not cover."""
     columns = _library.columns(0)
-    found, _ = case._solve([], np.empty((1, 0)), list(columns), 1)
-    pairs = zip(columns.items(), found[0].tolist(), strict=True)
-    return {name: column.value(value) for (name, column), value in pairs}
-
-
-def _remarks(case: Case, numbers: Mapping[str, float | str]) -> list[str]:
-    """Numbers that look like those in another unit, and what the data do not cover."""
-    text = c_void_p()
-    call("vcor_warnings", case._pointer, 0, _library.texts(()), 1, np.empty((1, 0)), byref(text))
-    lines = (_library.take_text(text) or "").splitlines()
-    if not case._has_mesh:
-        status = _library.columns(0)["status"].labels.split().index(str(numbers["status"]))
-        point = [np.array([one], dtype=float)
-                 for one in (status, numbers["contact_time"], numbers["cor"])]  # fmt: skip
-        lines += _coverage._beyond_data(case, [], np.empty((1, 0)), *point).splitlines()
-    elif any(case[f"{path_of(name)}.valid_from"] is not None for name in materials_of(case)):
+    # data are compared by solutions, which take long with exact mechanics
+    is_examined = not case._has_mesh
+    found, remarks, fault = _coverage.solved(case, {}, list(columns), False, is_examined)
+    if fault:
+        raise fault
+    lines = [*remarks.units.splitlines(), *remarks.beyond_data.splitlines()]
+    if not is_examined and any(case[f"{path_of(name)}.valid_from"] is not None
+                               for name in materials_of(case)):  # fmt: skip
         lines.append("Whether the data of the materials cover this contact is not examined here "
                      "with exact mechanics; vcor run says it.")  # fmt: skip
-    return lines
+    pairs = zip(columns.items(), found, strict=True)
+    return {name: column.value(value) for (name, column), value in pairs}, lines
 
 
 def _history(case: Case) -> dict[str, Floats]:

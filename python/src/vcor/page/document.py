@@ -221,6 +221,7 @@ def _packed(table: Table) -> dict[str, Any]:
     """A table as the page reads it: numbers in base 64, little endian."""
 
     def packed(numbers: Any, kind: str) -> str:
+        """Numbers of a kind in base 64."""
         return base64.b64encode(np.asarray(numbers, dtype=kind).tobytes()).decode()
 
     return {

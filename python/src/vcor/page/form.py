@@ -273,9 +273,11 @@ class Form:
         )  # fmt: skip
 
         def fill() -> None:
+            """Make the fields, when they are seen for the first time."""
             box.children = [self._field(one).root for one in addresses]
 
         def press(_attr: str, _old: bool, new: bool) -> None:
+            """Show or hide the fields."""
             self._open[title] = new
             if new and not box.children:
                 fill()

@@ -174,6 +174,7 @@ class Page:
         span = self._span
 
         def found() -> Iterator[Answer]:
+            """The answers one after another; a fault of the page is one, too."""
             try:
                 yield from parts(case, span, kept)
             except Exception:
@@ -528,6 +529,7 @@ class Page:
         case = self.case
 
         def unit_of(address: str) -> str:
+            """Unit of a key of the case."""
             return case._describe(address).unit
 
         try:

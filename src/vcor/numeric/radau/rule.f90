@@ -189,7 +189,8 @@ contains
       type(map_t), intent(out) :: map
       type(error_t), allocatable, intent(out) :: error
 
-      ! eigenvalue over the largest one that is zero but for rounding
+      ! eigenvalue over the largest one that is zero but for rounding: that of the map `closing` is
+      ! 1e-16, the next one 0.13
       real(wp), parameter :: zero = 1.0e-9_wp
       real(wp), dimension(size(node), size(node)) :: b, vector, inverse, factors
       real(wp) :: wr(size(node)), wi(size(node)), none(1, 1), work(8*size(node))

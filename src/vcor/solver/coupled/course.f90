@@ -65,6 +65,7 @@ contains
       real(wp), intent(in) :: weight
       logical :: rests
 
+      ! part of the weight by which a linear contact may differ from rest
       real(wp), parameter :: near = 0.1_wp
 
       rests = self%status == course_outlasts .and. weight > 0.0_wp

@@ -73,7 +73,8 @@ contains
       ! error of `advance` (see there) with that of the shape of the body over its dent, of a sphere
       ! and of blunter bodies: these are within 0.006 of marches of 2560 steps and 64 hats
       real(wp), parameter :: unknown(2) = [0.006_wp, 0.01_wp]
-      ! steps between the values from which the root is found
+      ! steps between the values from which the root is found: with 2 and 8 contact times of 40
+      ! random impacts change by up to 2e-5, less than half of what is stated
       integer, parameter :: spans = 4
       real(wp), allocatable :: steady(:)
       real(wp) :: early, fast, root

@@ -8,8 +8,8 @@ module vcor_solver_coupled_kernel
    use vcor_kinds, only : pi, wp
    use vcor_numeric_quadrature, only : gauss_nodes, legendre
    use vcor_solver_coupled_row, only : new_row, row_t, transforms
-   use vcor_solver_coupled_rule, only : nodes, weights
-   use vcor_solver_coupled_spectrum, only : moduli_t, new_moduli, new_spectrum, panel_nodes, &
+   use vcor_solver_coupled_rule, only : nodes, weights, wrap
+   use vcor_solver_coupled_spectrum, only : face_moduli_t, new_moduli, new_spectrum, panel_nodes, &
       spectrum_t
    implicit none
    private
@@ -58,7 +58,7 @@ module vcor_solver_coupled_kernel
       real(wp), allocatable :: later(:, :)
       !> What the face is at the frequencies of the mesh, and the compliance of what moves as a
       !> whole
-      type(moduli_t) :: moduli
+      type(face_moduli_t) :: moduli
       complex(wp), allocatable, private :: drift(:)
    contains
       procedure :: is_for
@@ -132,8 +132,6 @@ contains
       !> Error of code `error_internal`
       type(error_t), allocatable, intent(out) :: error
 
-      ! the part of the first weight from which the springs are elastic: weights have errors of it
-      real(wp), parameter :: negligible = 1.0e-7_wp
       real(wp) :: found(1, 0:mesh%steps - 1)
 
       self%mesh = mesh
@@ -141,7 +139,8 @@ contains
       call new_row(self%row, mesh%radius, mesh%hats, mesh%springs)
       found = weights(reshape(self%moduli%compliance, [1, size(self%moduli%compliance)]))
       allocate (self%local(0:mesh%steps - 1), source=found(1, :))
-      self%remembers = any(abs(self%local(1:)) > negligible*self%local(0))
+      ! weights have errors of this size
+      self%remembers = any(abs(self%local(1:)) > wrap*self%local(0))
       call add_response(self, face, spectrum, error)
    end subroutine new_kernel
 
@@ -149,6 +148,9 @@ contains
    !> response of hat j to hat i is
    !>
    !>     C_ij(s) = (1/(pi Q'(s))) int_0^oo (L(k, s) - 1) g_i(k) g_j(k) dk + c(s)
+   !>
+   !> Of these symmetric matrices the upper triangle is stored, see `pair`: the integrals take a
+   !> tenth of the time of an impact, and all elements would take nearly twice as long
    subroutine add_response(self, face, spectrum, error)
       type(kernel_t), intent(inout) :: self
       type(face_t), intent(in) :: face
@@ -156,11 +158,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       complex(wp) :: response(pair(self%mesh%hats, self%mesh%hats), 0:self%mesh%steps/2)
+      complex(wp), allocatable :: integral(:, :)
       real(wp), allocatable :: products(:, :)
       real(wp) :: last
       integer :: l
 
-      response = 0.0_wp
+      self%drift = drift_of(face, self)
+      response = spread(self%drift, 1, size(response, 1))
       if (face%has_response()) then
          last = last_wavenumber(self%row)
          if (.not. spectrum%suits(self%moduli, self%mesh%radius)) &
@@ -168,25 +172,18 @@ contains
          call spectrum%extend(face, last)
          call find_products(self%row, spectrum, last, products, error)
          if (allocated(error)) return
-         if (face%has_waves) then
-            response = integrals(products, spectrum%excess)
-            call add_passing(self, face, products, spectrum%passing)
-         else
-            response = spread(reshape(integrals(products, spectrum%excess), &
-               [size(products, 1)]), 2, size(response, 2))
-         end if
+         integral = integrals(products, spectrum%excess)
          do l = 0, ubound(response, 2)
-            response(:, l) = response(:, l)/self%moduli%modulus(l)
+            ! without waves L is one at all frequencies
+            response(:, l) = integral(:, 1 + merge(l, 0, face%has_waves)) &
+               /self%moduli%modulus(l) + response(:, l)
          end do
+         if (face%has_waves) call add_passing(self, face, products, spectrum%passing)
       end if
-      self%drift = drift_of(face, self)
-      do l = 0, ubound(response, 2)
-         response(:, l) = response(:, l) + self%drift(l + 1)
-      end do
       call add_weights(self, response)
    end subroutine add_response
 
-   !> Integrals over the wavenumbers, sum products L
+   !> Integrals over the wavenumbers, sum products (L - 1)
    pure function integrals(products, excess) result(response)
       !> Products of hats, shape (pairs, nodes)
       real(wp), intent(in) :: products(:, :)
@@ -338,7 +335,8 @@ contains
       complex(wp), intent(in) :: excess(:, :)
 
       ! part of the row at which `beside` stands, of its elements by their grading an eighth of the
-      ! radius: near enough for the curvature on the axis
+      ! radius: near enough for the curvature on the axis. With an eighth and a half, contact times
+      ! of 40 random impacts change by up to 3e-4, 0.8 and 2 stated errors
       real(wp), parameter :: part = 0.25_wp
       complex(wp) :: rate
       real(wp) :: stiffness, near(2*self%mesh%hats, size(products, 2))

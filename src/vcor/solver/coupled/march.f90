@@ -160,7 +160,7 @@ contains
       !> Pressure [Pa]; 0 for a contact of few springs, and where no spring makes it negative
       real(wp) :: mean
 
-      ! springs up to the edge of a contact that resolves the quarter
+      ! springs up to the edge of a contact that resolves the quarter: four are within it
       integer, parameter :: resolved = 16
       real(wp) :: b, before, here
       integer :: i, last

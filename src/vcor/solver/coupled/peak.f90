@@ -27,10 +27,11 @@ contains
       real(wp), intent(in) :: dt
       type(peak_t) :: peak
 
-      ! part of the largest value down to which it is fitted: the top of a sine is within 1e-7
+      ! part of the largest value down to which it is fitted: the top of a sine is within 1e-7. With
+      ! 0.9 and 0.975 forces of 40 random impacts change by up to 1.4e-4, 1.7 stated errors
       real(wp), parameter :: high = 0.95_wp
       integer, parameter :: degree = 4
-      ! of Newton's method, from a step of the top or less
+      ! of Newton's method, from a step of the top or less: its error is squared eight times
       integer, parameter :: iterations = 8
       ! coefficients, and the first column of the inverse of `products`
       real(wp) :: c(0:degree), unit(0:degree), both(0:degree, 2)

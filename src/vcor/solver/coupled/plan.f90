@@ -4,6 +4,7 @@ module vcor_solver_coupled_plan
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_coupled_kernel, only : mesh_t
+   use vcor_tuning, only : most_iterations
    implicit none
    private
 
@@ -67,8 +68,7 @@ contains
       type(impact_t), intent(in) :: impact
       type(scale_t) :: scale
 
-      ! the map contracts by half of the exponent of a power law at least
-      integer, parameter :: iterations = 100
+      ! digits of the time scale beyond which rounding would keep the iteration going
       real(wp), parameter :: same = 1.0e-13_wp
       real(wp) :: guess, stiffness
       integer :: i
@@ -84,7 +84,8 @@ contains
       end if
       ! from no time of its own, for neighbours share it to the last bit
       guess = 1.0_wp
-      do i = 1, iterations
+      ! the map contracts by half of the exponent of a power law at least
+      do i = 1, most_iterations
          stiffness = (impact%kernel_integral(guess) + impact%kernel_viscosity())/guess &
             *scale%length**(impact%law%start_exponent - 1.0_wp)
          scale%time = sqrt(impact%mass/stiffness)

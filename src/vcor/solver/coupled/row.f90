@@ -38,7 +38,8 @@ module vcor_solver_coupled_row
       procedure :: gather
    end type row_t
 
-   !> Exponent of the grading of the nodes
+   !> Exponent of the grading of the nodes: with 1.25 and 2 results of 40 random impacts change by
+   !> up to 6e-4 and 3e-3, 3 and 6 stated errors
    real(wp), parameter :: grading = 1.5_wp
 
 contains
@@ -139,7 +140,8 @@ contains
       !> Error of code `error_internal`
       type(error_t), allocatable, intent(out) :: error
 
-      ! below, the integrals over an element by their series
+      ! below, the integrals over an element by their series, which err by z^6/5040 = 3e-12; the
+      ! closed form loses digits as z^-2
       real(wp), parameter :: small = 0.05_wp
       real(wp), dimension(size(node), size(node)) :: products, inverse
       real(wp) :: third, half, z, even, odd

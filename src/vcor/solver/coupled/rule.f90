@@ -11,10 +11,13 @@ module vcor_solver_coupled_rule
    implicit none
    private
 
-   public :: nodes, weights, differences, integrals
+   public :: nodes, weights, differences, integrals, wrap
 
+   !> beta of delta(z), see above
    real(wp), parameter :: beta = 1.5_wp
-   !> |z|^steps: the weights have errors of its size, and of rounding over it
+   !> |z|^steps: the weights have errors of its size, and of rounding over it, which the marches
+   !> amplify. With 1e-6 and 1e-8 results of 40 random impacts change by up to 3e-6, 2 and 1 stated
+   !> errors
    real(wp), parameter :: wrap = 1.0e-7_wp
    !> Numerator and denominator of delta(z), coefficients of 1, z and z^2: with them a time
    !> derivative is sum differences = dt sum integrals of what is differentiated

@@ -11,10 +11,10 @@ module vcor_solver_coupled_spectrum
    implicit none
    private
 
-   public :: moduli_t, new_moduli, new_spectrum, panel_nodes, spectrum_t
+   public :: face_moduli_t, new_moduli, new_spectrum, panel_nodes, spectrum_t
 
    !> What a face is at the frequencies of a march
-   type :: moduli_t
+   type :: face_moduli_t
       !> Number of steps, and duration of all [s]
       integer :: steps = 0
       real(wp) :: window = 0.0_wp
@@ -30,7 +30,7 @@ module vcor_solver_coupled_spectrum
    contains
       procedure :: is_for
       procedure :: equals
-   end type moduli_t
+   end type face_moduli_t
 
    !> Nodes of a panel
    integer, parameter :: panel_nodes = 10
@@ -40,7 +40,7 @@ module vcor_solver_coupled_spectrum
 
    !> The response
    type :: spectrum_t
-      type(moduli_t) :: moduli
+      type(face_moduli_t) :: moduli
       !> Radius of the row of springs [m] for which the panels are
       real(wp) :: radius = 0.0_wp
       !> End of the last panel [1/m]
@@ -64,7 +64,7 @@ contains
 
    !> Find what a face is at the frequencies of a march
    pure subroutine new_moduli(self, face, steps, window)
-      type(moduli_t), intent(out) :: self
+      type(face_moduli_t), intent(out) :: self
       type(face_t), intent(in) :: face
       !> Number of steps, and duration of all [s]
       integer, intent(in) :: steps
@@ -86,14 +86,14 @@ contains
 
    !> Whether this is what a face is at the frequencies of a march
    pure function is_for(self, face, steps, window) result(yes)
-      class(moduli_t), intent(in) :: self
+      class(face_moduli_t), intent(in) :: self
       type(face_t), intent(in) :: face
       !> Number of steps, and duration of all [s]
       integer, intent(in) :: steps
       real(wp), intent(in) :: window
       logical :: yes
 
-      type(moduli_t) :: other
+      type(face_moduli_t) :: other
 
       yes = self%steps == steps .and. .not. abs(self%window - window) > 0.0_wp
       if (.not. yes) return
@@ -103,8 +103,8 @@ contains
 
    !> Whether two faces and marches are the same
    pure function equals(self, other) result(yes)
-      class(moduli_t), intent(in) :: self
-      type(moduli_t), intent(in) :: other
+      class(face_moduli_t), intent(in) :: self
+      type(face_moduli_t), intent(in) :: other
       logical :: yes
 
       yes = self%steps == other%steps .and. .not. abs(self%window - other%window) > 0.0_wp &
@@ -122,7 +122,7 @@ contains
       type(spectrum_t), intent(out) :: self
       type(face_t), intent(in) :: face
       !> The face at the frequencies of the march
-      type(moduli_t), intent(in) :: moduli
+      type(face_moduli_t), intent(in) :: moduli
       !> Radius of the row of springs [m]
       real(wp), intent(in) :: radius
 
@@ -175,7 +175,7 @@ contains
    !> Whether the response is that of a face at the frequencies of a march
    pure function suits(self, moduli, radius)
       class(spectrum_t), intent(in) :: self
-      type(moduli_t), intent(in) :: moduli
+      type(face_moduli_t), intent(in) :: moduli
       !> Radius of the row of springs [m]
       real(wp), intent(in) :: radius
       logical :: suits
@@ -189,10 +189,11 @@ contains
    !> what is left of the contact long before
    pure function passing_nodes(face, moduli) result(p)
       type(face_t), intent(in) :: face
-      type(moduli_t), intent(in) :: moduli
+      type(face_moduli_t), intent(in) :: moduli
       !> The variables [1/m], none without waves
       complex(wp), allocatable :: p(:)
 
+      ! a quarter of the window; the transform takes steps in multiples of four
       integer, parameter :: part = 4, turn = 4
       real(wp) :: rate
       integer :: lags
@@ -222,7 +223,8 @@ contains
       ! with the distance of a pole over half of the length 2.6 and 5, and the length over the
       ! distance of the panel from k = 0
       real(wp), parameter :: near(2) = [0.77_wp, 0.4_wp], growth(2) = [0.7_wp, 0.5_wp]
-      ! wavenumber times thickness up to which a layer resonates
+      ! wavenumber times thickness up to which a layer resonates: half of it changes results of 40
+      ! random impacts by up to 6e-7, 3e-4 stated errors
       real(wp), parameter :: resonant = 25.0_wp
       real(wp) :: start, length, least, longer
 

@@ -22,7 +22,7 @@ module vcor_solver_direct_motion
    implicit none
    private
 
-   public :: motion_t
+   public :: node_motion_t
 
    !> Integral over time up to a node, with the integrand at that node and the one before
    type :: integral_t
@@ -33,7 +33,7 @@ module vcor_solver_direct_motion
    end type integral_t
 
    !> Motion of both bodies at the node being solved
-   type :: motion_t
+   type :: node_motion_t
       !> Time [s]
       real(wp) :: t = 0.0_wp
       !> s = indentation(1) - indentation(2)*F [m], [m/N]
@@ -73,13 +73,13 @@ module vcor_solver_direct_motion
       procedure :: advance
       procedure :: respond
       procedure :: accept
-   end type motion_t
+   end type node_motion_t
 
 contains
 
    !> Make room for `steps` steps and set the memory weights; steps already taken are kept
    subroutine prepare(self, impact, dt, steps)
-      class(motion_t), intent(inout) :: self
+      class(node_motion_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
@@ -104,7 +104,7 @@ contains
    !> Advance to node n: choose the rule for the step and add to each integral all but the share of
    !> node n itself
    pure subroutine advance(self, impact, n, stiffness, viscosity)
-      class(motion_t), intent(inout) :: self
+      class(node_motion_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -143,7 +143,7 @@ contains
 
    !> Set the motion at node n as a linear function of the force there
    pure subroutine respond(self, impact, n, dashpot)
-      class(motion_t), intent(inout) :: self
+      class(node_motion_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -182,7 +182,7 @@ contains
 
    !> Complete all integrals with the force found at node n
    pure subroutine accept(self, n, force, dashpot)
-      class(motion_t), intent(inout) :: self
+      class(node_motion_t), intent(inout) :: self
       !> Node
       integer, intent(in) :: n
       !> Force without a dashpot's [N]
@@ -250,7 +250,7 @@ contains
    !> [(alpha - alpha_start) F] - int (alpha - alpha_start) F', also where alpha' is not resolved
    pure function rule_of_drift(self, plate, n, start, linear) result(rule)
       !> The motion, with alpha at the end of the step
-      type(motion_t), intent(in) :: self
+      type(node_motion_t), intent(in) :: self
       type(target_t), intent(in) :: plate
       !> Step, >= 2
       integer, intent(in) :: n

@@ -26,7 +26,7 @@ module vcor_solver_direct_product
    use vcor_solver_direct_contacts, only : solve_contacts
    use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, find_peaks, &
       parabola, set_shares
-   use vcor_solver_direct_motion, only : motion_t
+   use vcor_solver_direct_motion, only : node_motion_t
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
@@ -43,7 +43,7 @@ module vcor_solver_direct_product
    end type product_t
 
    !> State of a run with a given time step at the newest node
-   type :: run_t
+   type :: product_run_t
       !> Kernel of the contact
       type(contact_kernel_t) :: kernel
       !> Differences of u from node to node [m^1.5]
@@ -59,7 +59,7 @@ module vcor_solver_direct_product
       !> Impulse of the dashpot [N s]; constant once a receding contact shrinks
       real(wp) :: dashpot = 0.0_wp
       !> Motion at the node as a function of the force there
-      type(motion_t) :: motion
+      type(node_motion_t) :: motion
       !> Indentation [m]
       real(wp) :: s = 0.0_wp
       !> u(s) [m^1.5]
@@ -70,7 +70,7 @@ module vcor_solver_direct_product
       real(wp) :: speed = 0.0_wp
       !> Force without that of the dashpot [N]
       real(wp) :: force = 0.0_wp
-   end type run_t
+   end type product_run_t
 
 contains
 
@@ -93,6 +93,7 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! steps by which the contact may be longer with half of the step
       integer, parameter :: spare = 8
       real(wp) :: dt, span, work, cor(3), cor_sphere(3), contact_time(3), depth(3), force(3)
       type(richardson_t) :: found
@@ -213,13 +214,13 @@ contains
       real(wp), intent(out) :: work
       type(error_t), allocatable, intent(out) :: error
 
-      type(run_t) :: run
+      type(product_run_t) :: run
       real(wp) :: end_time, node(columns), alpha, theta
       integer :: n, room, most
       logical :: ends, stopped
 
       end_time = settings%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
+      if (.not. end_time > 0.0_wp) end_time = impact%lasting_time(impact%time_scale())
       room = min(max(16, expected), most_steps(.false.)) + 1
       run%second_coefficient = settings%second_coefficient
       run%viscosity = impact%kernel_viscosity()
@@ -254,7 +255,7 @@ contains
             return
          end if
          crude = crude .or. &
-            impact%outruns(alpha, run%motion%alpha, run%motion%impulse, run%motion%t)
+            impact%may_part_unnoticed(alpha, run%motion%alpha, run%motion%impulse, run%motion%t)
          if (crude .and. .not. settings%time_step > 0.0_wp) return
          if (run%receding%regrows) then
             ! the weight may make it grow again: stop if the remaining energy cannot separate it
@@ -349,7 +350,7 @@ contains
 
    !> Make room for `room` steps; contents are kept
    subroutine make_room(run, impact, dt, room, trajectory)
-      type(run_t), intent(inout) :: run
+      type(product_run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
@@ -369,7 +370,7 @@ contains
 
    !> Advance to node n: compute the motion and the force there
    subroutine take_step(run, impact, n)
-      type(run_t), intent(inout) :: run
+      type(product_run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -397,7 +398,7 @@ contains
    !> Solve node n with a force that is the sum over the whole past: the equation of motion with
    !> F = known + linear*u + quadratic*u^2 and the dashpot's viscosity*u' is s + c u + d u^2 = r
    subroutine step_with_all_the_past(run, impact, n)
-      type(run_t), intent(inout) :: run
+      type(product_run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -439,7 +440,7 @@ contains
    !> Solve node n with the force of a shrinking contact, from the past up to t1 or from springs.
    !> If the contact still grows, the solution is left as it is
    subroutine step_with_a_part(run, impact, n, dashpot)
-      type(run_t), intent(inout) :: run
+      type(product_run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -460,7 +461,7 @@ contains
 
    !> Force of the dashpot at the node, 0 once a receding contact shrinks
    pure function drag(run)
-      type(run_t), intent(in) :: run
+      type(product_run_t), intent(in) :: run
       !> Force [N]
       real(wp) :: drag
 
@@ -470,7 +471,7 @@ contains
 
    !> State at the node
    pure function state_of(run, impact) result(node)
-      type(run_t), intent(in) :: run
+      type(product_run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
       !> State
       real(wp) :: node(columns)

@@ -21,7 +21,8 @@ module vcor_solver_direct_receding
 
    public :: receding_t
 
-   !> Growth of t1 in a step, in units of the step, that may still be rounding
+   !> Growth of t1 in a step, in units of the step, that may still be rounding: where s' is zero, t1
+   !> moves by the root of what s is off
    real(wp), parameter :: rounding = sqrt(epsilon(1.0_wp))
 
    !> State of a receding contact

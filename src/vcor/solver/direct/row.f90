@@ -18,10 +18,10 @@ module vcor_solver_direct_row
    implicit none
    private
 
-   public :: row_t
+   public :: dent_row_t
 
    !> The springs at the newest node
-   type :: row_t
+   type :: dent_row_t
       !> Whether they are a row of springs in s, otherwise one in u
       logical, private :: recedes = .false.
       !> Whether only that of the row which is touched first is followed
@@ -64,13 +64,13 @@ module vcor_solver_direct_row
       procedure :: compression
       procedure :: depth_of
       procedure :: modes
-   end type row_t
+   end type dent_row_t
 
 contains
 
    !> Set up springs that nothing has touched
    subroutine prepare(self, terms, law, dt, spacing)
-      class(row_t), intent(out) :: self
+      class(dent_row_t), intent(out) :: self
       !> Kernel of the contact [N/m^1.5]
       type(exponential_sum_t), intent(in) :: terms
       type(contact_law_t), intent(in) :: law
@@ -79,6 +79,7 @@ contains
       !> Distance between springs of a row, at least [m]
       real(wp), intent(in) :: spacing
 
+      ! springs for which there is room at first
       integer, parameter :: usual = 64
       integer :: room
 
@@ -94,7 +95,7 @@ contains
 
    !> Set the length of the steps
    subroutine set_step(self, terms, dt)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       !> Kernel of the contact [N/m^1.5]
       type(exponential_sum_t), intent(in) :: terms
       !> Time step [s]
@@ -150,7 +151,7 @@ contains
 
    !> Add a spring
    subroutine touch(self, law, s, change)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation at first touch, and its last change [m]
       real(wp), intent(in) :: s, change
@@ -182,7 +183,7 @@ contains
 
    !> Number of modes of the kernel
    pure function modes(self)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       integer :: modes
 
       modes = size(self%decay)
@@ -191,7 +192,7 @@ contains
    !> Set the state of the spring touched first, which alone is followed from then on: a force > 0
    !> says that it is touched
    subroutine set(self, w, change, lag)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       !> Its compression and the last change of it
       real(wp), intent(in) :: w, change
       !> Its lags, shape (modes)
@@ -206,7 +207,7 @@ contains
 
    !> Let the dent recover in flight
    subroutine recover(self, recovery, time)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       !> That of this kernel
       type(recovery_t), intent(in) :: recovery
       !> Time [s]
@@ -222,7 +223,7 @@ contains
 
    !> Amplitudes of the motions of the free spring touched first, whose compression is their sum
    pure function recovery_of_first(self, recovery) result(c)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       !> That of this kernel
       type(recovery_t), intent(in) :: recovery
       !> Amplitudes, shape (motions)
@@ -233,13 +234,13 @@ contains
 
    !> Whether nothing noticeable is left of a dent
    pure function is_untouched(self, law, indentation)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation of the next contact [m]
       real(wp), intent(in) :: indentation
       logical :: is_untouched
 
-      ! share of that indentation, below which its force does not change
+      ! share of that indentation, four times epsilon, below which its force does not change
       real(wp), parameter :: negligible = 1.0e-15_wp
       real(wp) :: least
 
@@ -252,7 +253,7 @@ contains
    !> Begin a contact at a node, where a sphere meets a dent: what would have been pressed over a
    !> step before it makes the first parabola straight
    subroutine begin_pressing(self, law, s, travel)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation, and its change over a step before [m]
       real(wp), intent(in) :: s, travel
@@ -266,7 +267,7 @@ contains
 
    !> Cut the newest step of one spring, over the rest of which it is straight
    subroutine cut(self, w, part, start)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       !> Compression at the end of the part [m^1.5]
       real(wp), intent(in) :: w
       !> Part of the step, 0 .. 1
@@ -281,7 +282,7 @@ contains
 
    !> Whether the contact is one spring in u, as by Boltzmann's law
    pure function has_one_spring(self)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       logical :: has_one_spring
 
       has_one_spring = .not. self%recedes
@@ -289,7 +290,7 @@ contains
 
    !> Force over the compression of the last step without the dashpot
    pure function stiffness_without_dashpot(self) result(stiffness)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       !> Stiffness [N/m^1.5]
       real(wp) :: stiffness
 
@@ -298,7 +299,7 @@ contains
 
    !> Force of all but the dashpot in one spring in u at the newest node
    pure function elastic_force(self) result(force)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       !> Force [N]
       real(wp) :: force
 
@@ -307,7 +308,7 @@ contains
 
    !> Find the levels at the next node
    subroutine find_levels(self, with_dashpot)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       !> Whether the force of the dashpot is included; absent: it is
       logical, intent(in), optional :: with_dashpot
 
@@ -336,7 +337,7 @@ contains
    !> Force over `stiffness`, and its derivative by s: for a row int max(0, s - level) u'' dsigma,
    !> with the level linear between two springs
    subroutine press(self, law, s, value, slope)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation [m]
       real(wp), intent(in) :: s
@@ -390,7 +391,7 @@ contains
 
    !> Complete the springs with the indentation at the new node
    subroutine accept(self, law, s, change)
-      class(row_t), intent(inout) :: self
+      class(dent_row_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation there, and its change over the step [m]
       real(wp), intent(in) :: s, change
@@ -422,7 +423,7 @@ contains
    !> Indentation at which the first contact begins or the last ends at the node being solved: that
    !> of the spring touched first
    function surface(self, law) result(s)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation [m]
       real(wp) :: s
@@ -432,7 +433,7 @@ contains
 
    !> Indentation at which the spring touched first is as it is at the newest node
    function compression(self, law) result(s)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       type(contact_law_t), intent(in) :: law
       !> Indentation [m]
       real(wp) :: s
@@ -442,7 +443,7 @@ contains
 
    !> Indentation that compresses the spring touched first
    function depth_of(self, law, w) result(s)
-      class(row_t), intent(in) :: self
+      class(dent_row_t), intent(in) :: self
       type(contact_law_t), intent(in) :: law
       !> Its compression
       real(wp), intent(in) :: w

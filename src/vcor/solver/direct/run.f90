@@ -19,7 +19,8 @@ module vcor_solver_direct_run
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_direct_evaluation, only : fall_of, parabola
    use vcor_solver_direct_modes, only : modes_t
-   use vcor_solver_direct_row, only : row_t
+   use vcor_solver_direct_row, only : dent_row_t
+   use vcor_tuning, only : most_iterations
    implicit none
    private
 
@@ -37,7 +38,7 @@ module vcor_solver_direct_run
       integer :: steps = 0
       !> Modes of the structure and springs of the contact
       type(modes_t) :: modes
-      type(row_t) :: row
+      type(dent_row_t) :: row
       !> Whether no mode is a rigid motion, nor a part a flow
       logical :: is_held = .false.
       !> Flexibility that follows at once [m/N]
@@ -117,7 +118,6 @@ contains
       class(run_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
 
-      integer, parameter :: most_iterations = 60
       real(wp) :: known, per_force, value, slope, s, change, force, velocity, bend
       integer :: iteration
 
@@ -189,7 +189,6 @@ contains
       class(run_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
 
-      integer, parameter :: most_iterations = 60
       real(wp), dimension(3) :: once, twice
       real(wp) :: of_u(2), f(2), impulse, second, known, per_force, per_u, s, u, value, slope, &
          change, last, speed(2), gained

@@ -29,7 +29,7 @@ module vcor_solver_ive_approach
 
    !> Number of points of a panel
    integer, parameter :: points = width + 1
-   !> exp(-this) is negligible
+   !> exp(-this) = 6e-19 is negligible
    real(wp), parameter :: gone = 42.0_wp
 
    !> One panel of the approach
@@ -74,6 +74,7 @@ contains
       !> The panel, its velocity known
       type(panel_t), intent(in) :: panel
 
+      ! panels for which there is room at first
       integer, parameter :: usual_panels = 8
       type(stretch_t), allocatable :: longer(:)
       complex(wp) :: s(slots), u(slots)

@@ -422,11 +422,13 @@ contains
 
       associate (panel => self%panel)
          velocity = panel%alpha(j)*panel%force(j) + panel%drift(j)
-         if (.not. self%impact%target%has_memory()) velocity = velocity + panel%impulse(j) &
-            *self%impact%target%alpha_rate(panel%time(j), panel%alpha(j))
-         if (.not. allocated(self%sums%vibration)) return
-         if (self%sums%vibration%residual > 0.0_wp) velocity = velocity &
-            + self%sums%vibration%residual*panel%rate_at(self%rule, panel%force, j)
+         if (allocated(self%sums%vibration)) then
+            if (self%sums%vibration%residual > 0.0_wp) velocity = velocity &
+               + self%sums%vibration%residual*panel%rate_at(self%rule, panel%force, j)
+         else if (.not. self%impact%target%hereditary()) then
+            velocity = velocity + panel%impulse(j) &
+               *self%impact%target%alpha_rate(panel%time(j), panel%alpha(j))
+         end if
       end associate
    end function plate_velocity_at
 

@@ -39,14 +39,17 @@ contains
       !> Whether the event was found
       logical, intent(out) :: found
 
+      ! iterations; where so many do not suffice, a shorter panel is tried
       integer, parameter :: most = 40
-      ! length over that of the last panel beyond which polynomials are useless; largest correction
-      ! of a closing panel
-      real(wp), parameter :: farthest = 2.0_wp, longest = 0.4_wp
+      ! length over that of the last panel beyond which polynomials are useless: it ends iterations
+      ! that diverge, of which 551 random impacts have none
+      real(wp), parameter :: farthest = 2.0_wp
       ! correction that may be left, over the accuracy; that of a turn over the square root of it,
-      ! since the two laws of the force differ by the fifth power of the time since then
+      ! since the two laws of the force differ by the fifth power of the time since then. Ten times
+      ! as much changes results by up to 3e-12, 0.07 stated errors
       real(wp), parameter :: near = 1.0e-2_wp
-      ! correction of a time, relative, that may be rounding
+      ! correction of a time, relative, that may be rounding: without, two of 551 random impacts
+      ! have no result
       real(wp), parameter :: rounding = 1.0e-7_wp
       type(panel_t) :: last
       real(wp) :: duration, correction, last_correction, allowed
@@ -67,8 +70,6 @@ contains
          last_correction = correction
          call time_to_event(motion, event, correction, found)
          if (.not. found) return
-         if (event == event_close) correction = sign(min(abs(correction), longest*duration), &
-            correction)
          found = abs(correction) <= allowed*duration .or. iteration > 3 &
             .and. abs(correction) <= rounding*(motion%start%time + duration) &
             .and. abs(correction) >= 0.25_wp*abs(last_correction)
@@ -180,6 +181,8 @@ contains
          !> Memory M at the points of the panel [N]
          real(wp), intent(in) :: memory(0:width)
 
+         ! relative correction that may be left, as this is part of an outer iteration: with 1e-9
+         ! results of 551 random impacts change by up to 0.06 stated errors
          real(wp), parameter :: roughly = 1.0e-3_wp
          integer, parameter :: most = 40
          real(wp) :: correction, slope, rate

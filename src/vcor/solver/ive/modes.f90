@@ -3,7 +3,7 @@
 !> With the integration matrix H of the panel the parts of a structure (`vcor_impact_structure`)
 !> move at the stages by
 !>
-!>     v = D^-1 [v_0 - b H eta_0 + (q - b kick H) H F],   D = 1 + a H + b H^2
+!>     v = D^-1 [v_0 - b H eta_0 + (q - b jump H) H F],   D = 1 + a H + b H^2
 !>     z = (1 + x H)^-1 (z_0 + r H F),   U' = sum v - sum x z,
 !>
 !> one more function of H that adds to the response P of a plate with memory, U' = alpha F + P H F +
@@ -35,7 +35,7 @@ contains
       complex(wp), intent(inout) :: past(slots)
 
       real(wp), dimension(slots) :: x, y, xx, xy, r, s, b, c
-      real(wp) :: one, other, norm, pull, free, kick, gain
+      real(wp) :: one, other, norm, pull, free, jump, gain
       integer :: n, m
 
       ! in real numbers, the loop over the eigenvalues innermost
@@ -51,16 +51,16 @@ contains
          associate (square => vibration%square(n), damping => vibration%damping(n), &
                     yield => vibration%yield(n), rate => state%rate(n))
             pull = square*state%eta(n)
-            kick = square*vibration%kick(n)
+            jump = square*vibration%jump(n)
             do m = 1, slots
                one = 1.0_wp + damping*x(m) + square*xx(m)
                other = damping*y(m) + square*xy(m)
                norm = 1.0_wp/(one*one + other*other)
                one = one*norm
                other = other*norm
-               gain = yield - kick*x(m)
-               r(m) = r(m) + gain*one - kick*y(m)*other
-               s(m) = s(m) - gain*other - kick*y(m)*one
+               gain = yield - jump*x(m)
+               r(m) = r(m) + gain*one - jump*y(m)*other
+               s(m) = s(m) - gain*other - jump*y(m)*one
                free = rate - pull*x(m)
                b(m) = b(m) + one*free - other*pull*y(m)
                c(m) = c(m) - one*pull*y(m) - other*free
@@ -124,14 +124,14 @@ contains
       modes = vibration%modes()
       do n = 1, size(vibration%square)
          associate (square => vibration%square(n), damping => vibration%damping(n), &
-                    kick => vibration%kick(n))
+                    jump => vibration%jump(n))
             rate = ((state%rate(n) - square*eigenvalue*state%eta(n))*map%left_one &
-               + (vibration%yield(n) - square*kick*eigenvalue)*impulse) &
+               + (vibration%yield(n) - square*jump*eigenvalue)*impulse) &
                /(1.0_wp + eigenvalue*(damping + square*eigenvalue))
             ! the last stage of a panel in which time stands still at the end has no weight
             if (damping > 0.0_wp .and. .not. vibration%relaxes .and. n <= modes) lost = lost &
                + damping/vibration%yield(n)*sum(weight*map%compose(rate)**2)
-            state%eta(n) = state%eta(n) + sum(real(map%last*(eigenvalue*rate + kick*impulse), wp))
+            state%eta(n) = state%eta(n) + sum(real(map%last*(eigenvalue*rate + jump*impulse), wp))
             state%rate(n) = left*state%rate(n) + sum(real(map%last*rate, wp))
          end associate
       end do

@@ -11,10 +11,11 @@ module vcor_solver_ive_newton
 
    public :: solve_panel, solve_companion, guess_growth, guess_rebound
 
-   !> Maximum number of iterations
+   !> Maximum number of iterations: with 6, 109 random impacts take 6 per cent more panels, with 24
+   !> 2 per cent fewer, each after more iterations
    integer, parameter :: most_iterations = 12
    !> Position beyond the end of a panel up to which its polynomials are a guess; those of t1, which
-   !> has a vertex, diverge sooner
+   !> has a vertex, diverge sooner. Half or twice the first makes no panel more or fewer
    real(wp), parameter :: farthest = 2.5_wp, farthest_t1 = 1.2_wp
 
 contains
@@ -188,7 +189,7 @@ contains
       logical, intent(in) :: ends
 
       ! slowest fall of t1 after the largest indentation, and the share of the approach for which it
-      ! holds
+      ! holds: without it 45 of 551 random impacts are computed in other panels, none of them worse
       real(wp), parameter :: slowest = 0.5_wp, near = 0.1_wp
       real(wp), dimension(width) :: elapsed, theta
       real(wp) :: vertex

@@ -12,9 +12,11 @@ module vcor_solver_paper_adams_bashforth
       col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_numeric_richardson, only : best_ratio
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_features, only : features, paper, refuse_features
-   use vcor_solver_paper_march, only : capped, march, share_of_newest, stable_damping
+   use vcor_solver_paper_march, only : capped, march, most_steps, share_of_newest, &
+      stable_damping
    use vcor_solver_type, only : features_of, solver_settings_t, solver_t
    implicit none
    private
@@ -54,6 +56,7 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
+      ! with 3000 steps the paper's impact on SLS is off by 2e-8, with half of them by 2e-7
       integer, parameter :: usual_steps = 3000, fewest_steps = 40
       real(wp) :: dt, contact_time
 
@@ -82,7 +85,8 @@ contains
       !> Error of code `error_input`, unallocated if there is none
       type(error_t), allocatable, intent(out) :: error
 
-      ! a k' that is infinite at 0 grows as a power of time towards it
+      ! a k' that is infinite at 0 grows as a power of time towards it, t^-0.01 by 1 % over a factor
+      ! of 4
       real(wp), parameter :: early = 1.0e-12_wp, noticeable = 1.01_wp
       type(exponential_sum_t) :: terms
       logical :: has(size(features))
@@ -158,7 +162,8 @@ contains
       !> The course with this step
       type(trajectory_t), intent(inout) :: trajectory
 
-      real(wp), parameter :: smallest_ratio = 1.2_wp, best_ratio = 8.0_wp
+      ! 2^order of a kernel t^-0.74
+      real(wp), parameter :: smallest_ratio = 1.2_wp
       real(wp), dimension(4) :: found, fine, estimate, ratio
       real(wp) :: coarse(4, 2), least
       logical :: known
@@ -225,6 +230,8 @@ contains
       !> Estimate [s]
       real(wp) :: step
 
+      ! the estimate is shown with three digits: the largest damping of the course is known as well,
+      ! and ten bisections of a factor of two are within 0.1 %
       real(wp), parameter :: accuracy = 1.0e-3_wp, noticeably_less = 0.9_wp
       integer, parameter :: halvings = 100, bisections = 10
       type(product_t) :: product
@@ -270,7 +277,6 @@ contains
          real(wp), intent(in) :: trial
          logical :: holds
 
-         integer, parameter :: most_terms = 60000
          real(wp) :: left
          integer :: j
 
@@ -278,7 +284,7 @@ contains
          if (.not. holds .or. self%settings%form == 'a') return
          left = impact%kernel(0.0_wp) &
             + share_of_newest(self%settings)*trial*impact%factor*impact%modulus%rate(0.0_wp)
-         do j = 1, min(int(impact%law%contact_time*impact%time_scale()/trial), most_terms)
+         do j = 1, min(int(impact%law%contact_time*impact%time_scale()/trial), most_steps)
             left = left + trial*impact%factor*impact%modulus%rate(trial*real(j, wp))
             holds = left > 0.5_wp*impact%kernel(trial*real(j, wp))
             if (.not. holds) return

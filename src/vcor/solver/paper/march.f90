@@ -29,7 +29,7 @@ module vcor_solver_paper_march
    implicit none
    private
 
-   public :: march, capped, share_of_newest, stable_damping
+   public :: march, capped, most_steps, share_of_newest, stable_damping
 
    !> Maximum number of steps: the sums of more take seconds
    integer, parameter :: most_steps = 60000
@@ -41,7 +41,7 @@ module vcor_solver_paper_march
    integer, parameter :: steps_beyond = points/2 - 1
 
    !> A run with a given step, at its last node
-   type :: run_t
+   type :: paper_run_t
       !> Time step [s]
       real(wp) :: dt = 0.0_wp
       !> Weight of the newest value in the sums
@@ -68,7 +68,7 @@ module vcor_solver_paper_march
       real(wp) :: plate = 0.0_wp, plate_velocity = 0.0_wp
       !> Damping d = (3/2) alpha sqrt(s) of oscillations from step to step by the plate
       real(wp) :: damping = 0.0_wp
-   end type run_t
+   end type paper_run_t
 
 contains
 
@@ -139,7 +139,7 @@ contains
       real(wp), parameter :: noticeable = 1.0e-5_wp
       ! factors of the initial velocity that no solution exceeds
       real(wp), parameter :: fastest = 1.2_wp, fastest_ghost = 20.0_wp
-      type(run_t) :: run
+      type(paper_run_t) :: run
       real(wp) :: end_time, limit, t, node(columns)
       integer :: n, room, crossing
       logical :: beyond_limit, ends
@@ -148,7 +148,7 @@ contains
       stable = .false.
       complete = .true.
       end_time = settings%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
+      if (.not. end_time > 0.0_wp) end_time = impact%lasting_time(impact%time_scale())
       room = max(kernel_terms, nint(min(min(end_time, 5.0_wp*impact%time_scale())/dt, &
          real(most_steps, wp)))) + steps_beyond + 2
       run%dt = dt
@@ -227,7 +227,7 @@ contains
 
    !> Make room for `room` steps; contents are kept
    subroutine make_room(run, settings, impact, room, trajectory)
-      type(run_t), intent(inout) :: run
+      type(paper_run_t), intent(inout) :: run
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Number of steps
@@ -265,7 +265,7 @@ contains
 
    !> Step (6), second half: s and s' at node n from s'' at earlier nodes
    pure subroutine advance(run, impact, n)
-      type(run_t), intent(inout) :: run
+      type(paper_run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -287,7 +287,7 @@ contains
 
    !> Step (4): the force at node n, the sums of Eqs. (8) and (10)
    pure subroutine sum_force(run, settings, impact, n)
-      type(run_t), intent(inout) :: run
+      type(paper_run_t), intent(inout) :: run
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Node
@@ -319,7 +319,7 @@ contains
 
    !> Steps (5) and (6): U'' by backward differences, and s'' from Eq. (11)
    pure subroutine accelerate(run, impact, n)
-      type(run_t), intent(inout) :: run
+      type(paper_run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -354,7 +354,7 @@ contains
 
    !> State at the last node
    pure function state_of(run, impact, t) result(node)
-      type(run_t), intent(in) :: run
+      type(paper_run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
       !> Its time [s]
       real(wp), intent(in) :: t
