@@ -160,7 +160,8 @@ contains
       if (place > 0) self%value(place)%number = value
    end subroutine set
 
-   !> Set a list by the name of its parameter; the points of a table are lists `times` and `moduli`
+   !> Set a list by the name of its parameter; the points of a table are lists `times` and `moduli`,
+   !> those of a Prony series are `rates` and `moduli`
    pure subroutine set_list(self, name, list)
       class(material_data_t), intent(inout) :: self
       !> A parameter of any model; for other names `new_material` fails
@@ -192,6 +193,22 @@ contains
       same = size(one) == size(other)
       if (same) same = .not. any(abs(one - other) > 0.0_wp)
    end function is_same
+
+   !> Whether two lists are the same but for their rounding
+   pure function is_near(one, other) result(near)
+      !> First list, shape (n)
+      real(wp), intent(in) :: one(:)
+      !> Second list, shape (m)
+      real(wp), intent(in) :: other(:)
+      logical :: near
+
+      ! a rate and the inverse of its time are decimal numbers and a quotient, each rounded by half
+      ! of epsilon
+      real(wp), parameter :: rounding = 2.0_wp*epsilon(1.0_wp)
+
+      near = size(one) == size(other)
+      if (near) near = .not. any(abs(one - other) > rounding*abs(other))
+   end function is_near
 
    !> Fit the points of a table once for all temperatures; otherwise `new_material` fits them each
    !> time. If the points are invalid, `new_material` reports why
@@ -302,7 +319,7 @@ contains
          associate (value => other%value(i))
             if (value%name == density%name) cycle
             yes = yes .and. .not. abs(self%number(value%name) - value%number) > 0.0_wp
-            if (yes .and. allocated(value%list)) yes = is_same(self%list(value%name), value%list)
+            if (yes .and. allocated(value%list)) yes = is_near(self%list(value%name), value%list)
          end associate
       end do
    end function has_all_of
@@ -319,7 +336,6 @@ contains
       type(cerf_t) :: cerf
       type(mittag_leffler_t) :: mittag_leffler
       type(tabulated_t) :: table
-      real(wp), allocatable :: rates(:)
       !> Factors of times and of moduli
       real(wp) :: a, b
       real(wp) :: exponent, time
@@ -342,9 +358,7 @@ contains
          call new_sls(prony, value('glassy_modulus'), value('alpha'), value('beta'), error)
          call accept(prony)
       case ('prony')
-         rates = values('rates')
-         if (size(rates) == 0) rates = 1.0_wp/values('times')
-         call new_prony(prony, value('equilibrium_modulus'), values('moduli'), rates, &
+         call new_prony(prony, value('equilibrium_modulus'), values('moduli'), values('rates'), &
             value('viscosity'), error)
          call accept(prony)
       case ('power_law')

@@ -1,5 +1,7 @@
 """The size of the sphere by its diameter, and which mass two spheres have."""
 
+import math
+
 import pytest
 from cases import SLS, edit
 from program import ALL, INPUT
@@ -55,3 +57,28 @@ def test_which_mass_two_spheres_have(vcor):
     assert "mass is not given" not in vcor("run", "case.nml").err
     vcor.write(BEADS.replace("surface_radius = 0.03", "surface_radius = -0.03"))
     assert "mass is not given" not in vcor("run", "case.nml").err
+
+
+@pytest.mark.parametrize("temperature", ["", ", temperature = 310.0"])
+@pytest.mark.parametrize("base", ["free", "bonded"])
+def test_times_are_rates(vcor, base, temperature):
+    """Two bodies of one rubber are that, whichever key each of them has, and whatever rounds."""
+    times = (5e-4, 2.9e-5, 7e-6)
+    series = [f"times = {str(times)[1:-1]}", f"rates = {str([1 / time for time in times])[1:-1]}"]
+    rubber = """&material name = '{}', model = 'prony', density = 1000, poisson_ratio = 0.5,
+   equilibrium_modulus = 4e6, moduli = 1e7, 2e7, 1e7, {}"""
+    if temperature:
+        rubber += ", shift = 'arrhenius', reference_temperature = 293.15, activation_energy = 5e4"
+    rubber += " /\n"
+    found = set()
+    for one in series:
+        for other in series:
+            text = f"&impact velocity = 2{temperature} /\n&sphere radius = 0.01, material = 'ball' /\n"
+            text += f"&plate thickness = 0.02, base = '{base}', waves = 'none', material = 'pad' /\n"
+            vcor.write(text + rubber.format("ball", one) + rubber.format("pad", other))
+            found.add(vcor.succeeds("run", "case.nml", "--print", "cor,contact_time,max_force,steps"))
+    assert len(found) == 1
+    next_to = math.nextafter(1 / times[1], math.inf)
+    rounded = series[1].replace(repr(1 / times[1]), repr(next_to))
+    vcor.write(text + rubber.format("ball", series[0]) + rubber.format("pad", rounded))
+    vcor.succeeds("check", "case.nml")

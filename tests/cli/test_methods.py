@@ -1,5 +1,7 @@
 """The methods against each other and against laws that need no reference."""
 
+import re
+
 import pytest
 from cases import SLS, case_text, edit
 from program import ALL, INPUT, NUMERICAL, PAPER, ROOT, SUCCESS
@@ -192,6 +194,30 @@ def test_auto_reads_what_the_method_in_use_reads(vcor, only_direct):
     found = vcor.succeeds(*case, *step)
     assert found == vcor.succeeds(*case, *step, "--set", "solver.method=direct")
     assert found != vcor.succeeds(*case)
+
+
+@pytest.mark.parametrize(("plate", "rubber", "solver"), [
+    (", waves = 'frozen'", "model = 'elastic', modulus = 1e7", ""),
+    (", waves = 'frozen'", "model = 'sls', glassy_modulus = 1e7, alpha = 300, beta = 300", ""),
+    (", waves = 'frozen'", "model = 'prony', equilibrium_modulus = 1e7", ""),
+    ("", "model = 'sls', glassy_modulus = 1e7, alpha = 300, beta = 1200",
+     "&solver volterra_order = 2, volterra_coefficient = 0 /"),
+])  # fmt: skip
+def test_the_method_shown_is_the_one_in_use(vcor, plate, rubber, solver):
+    """A frozen plate that does not relax, and a second term of no size, are solved by ive."""
+    vcor.write(f"""&impact velocity = 3 /
+&sphere radius = 0.01, material = 'ball' /
+&plate thickness = 0.04, material = 'rubber'{plate} /
+&material name = 'ball', model = 'rigid', density = 7800 /
+&material name = 'rubber', {rubber}, density = 1100, poisson_ratio = 0.5 /
+{solver}
+""")
+    words = ["run", "case.nml", "--set", "output.csv=false", "--set", "output.hdf5=false"]
+    shown = vcor.succeeds(*words)
+    ive = vcor.succeeds(*words, "--set", "plate.waves=relaxing", "--set", "solver.volterra_order=1")
+    ends = [re.search("method ive in .* steps.*", text)[0] for text in (shown, ive)]
+    assert ends[0] == ends[1]
+    vcor.refuses(*words, "--set", "solver.time_step=1e-5", code=INPUT, says="method ive")
 
 
 def test_advice_on_steps_is_for_who_takes_one(vcor):

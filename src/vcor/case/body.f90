@@ -5,6 +5,7 @@ module vcor_case_body
    use vcor_case_catalogue, only : catalogue, find_group, first_row, key_row, last_row, list_key
    use vcor_case_cause, only : explain
    use vcor_case_entries, only : address_t, entry_t
+   use vcor_case_inputs, only : put_list
    use vcor_case_reading, only : reading_t
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
@@ -146,7 +147,7 @@ contains
                entry = case%entry(address)
                if (size(entry%list) == 0) return
                call reading%mark(address)
-               call data%set_list(key%name, entry%list)
+               call put_list(data, trim(key%name), entry%list)
             else if (is_parameter) then
                if (key%name /= density%name) call reading%mark(address)
                number = case%number(address)

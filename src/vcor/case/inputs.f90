@@ -19,7 +19,7 @@ module vcor_case_inputs
    implicit none
    private
 
-   public :: inputs_t, target_inputs_t, input_key_t, is_same
+   public :: inputs_t, target_inputs_t, input_key_t, is_same, put_list
    public :: waves_body, of_sphere, of_plate, of_target, positive_or_zero
    public :: target_none, target_plate, target_beam, target_rod, target_block, target_modes
 
@@ -220,18 +220,41 @@ contains
       type(input_key_t), intent(in) :: quantity
       real(wp), intent(in) :: value
 
-      real(wp), allocatable :: list(:)
-
       if (quantity%key == 'yield_strength') then
          if (body <= size(self%yield_strength)) self%yield_strength(body) = value
       else if (quantity%element == 0) then
          if (.not. ieee_is_nan(value)) call self%material(body)%set(trim(quantity%key), value)
       else
-         list = self%material(body)%list(trim(quantity%key))
-         list(quantity%element) = value
-         call self%material(body)%set_list(trim(quantity%key), list)
+         call put_list(self%material(body), trim(quantity%key), [value], quantity%element)
       end if
    end subroutine put_material
+
+   !> Set a list of a material, or a number of it; relaxation times are rates there
+   pure subroutine put_list(material, key, numbers, element)
+      type(material_data_t), intent(inout) :: material
+      character(len=*), intent(in) :: key
+      !> In the unit of the key, shape (n), or (1) for a number of the list
+      real(wp), intent(in) :: numbers(:)
+      !> Index of the number; absent: the whole list
+      integer, intent(in), optional :: element
+
+      real(wp), allocatable :: list(:)
+      character(len=len(key)) :: name
+      logical :: are_times
+
+      ! those of a table are its points
+      are_times = key == 'times' .and. material%model == 'prony'
+      name = key
+      if (are_times) name = 'rates'
+      list = numbers
+      if (are_times) list = 1.0_wp/numbers
+      if (present(element)) then
+         list = [material%list(name), list]
+         list(element) = list(size(list))
+         list = list(:size(list) - 1)
+      end if
+      call material%set_list(name, list)
+   end subroutine put_list
 
    !> Velocity of approach
    pure function approach_velocity(self) result(velocity)

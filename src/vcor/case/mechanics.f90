@@ -53,6 +53,47 @@ contains
       has(of_layer) = base /= 'free'
    end function features_of_case
 
+   !> Features of a case without those that its numbers leave without an effect: the impact does not
+   !> have them, and no method is chosen for them
+   pure function effective_features(case) result(has)
+      !> A case whose bodies have materials
+      type(case_t), intent(in) :: case
+      !> Shape (size(features))
+      logical :: has(size(features))
+
+      has = features_of_case(case)
+      if (abs(case%number(case%address('solver', 'volterra_coefficient'))) <= 0.0_wp) &
+         has(of_second_term) = .false.
+      if (has(of_frozen_plate)) has(of_frozen_plate) = plate_relaxes(case)
+   end function effective_features
+
+   !> Whether the modulus of the plate depends on time
+   pure function plate_relaxes(case) result(relaxes)
+      !> A case whose bodies have materials
+      type(case_t), intent(in) :: case
+      logical :: relaxes
+
+      real(wp), allocatable :: moduli(:)
+      real(wp) :: alpha, beta
+      integer :: item
+
+      relaxes = .true.
+      item = case%material_of('plate')
+      select case (model_of(case, 'plate'))
+      case ('elastic')
+         relaxes = .false.
+      case ('prony')
+         call case%get('material', 'moduli', moduli, item)
+         relaxes = size(moduli) > 0
+      case ('sls')
+         alpha = case%number(case%address('material', 'alpha', item))
+         beta = case%number(case%address('material', 'beta', item))
+         if (.not. (ieee_is_nan(alpha) .or. ieee_is_nan(beta))) relaxes = alpha < beta
+      case default
+         continue
+      end select
+   end function plate_relaxes
+
    !> Method in use
    pure function method_of(case) result(name)
       !> A case whose bodies have materials
@@ -64,7 +105,7 @@ contains
 
       call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
-      name = method_for(method, scheme, features_of_case(case))
+      name = method_for(method, scheme, effective_features(case))
    end function method_of
 
    !> Place of the method in use in the table of `vcor_solver_features`
@@ -77,7 +118,7 @@ contains
 
       call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
-      place = method_in_use(method, scheme, features_of_case(case))
+      place = method_in_use(method, scheme, effective_features(case))
    end function place_of_method
 
    !> Whether the impact has waves in a plate of any thickness
