@@ -32,7 +32,7 @@ BUILD = Path(os.environ["VCOR_BUILD"])
 #: of the table
 COMPILED = {
     "a column of the summary": ["src/vcor/sweep/quantity.f90"],
-    "a key of the input": [CATALOGUE, INPUTS, READER],
+    "a key of the input": [CATALOGUE, INPUTS, "src/vcor/case/body.f90", READER],
     "a shape of the striking body": [SHAPE, CATALOGUE],
     "a method": [FEATURES, "src/vcor/solver/type.f90", "src/vcor/solver/my_method.f90", FACTORY],
 }
