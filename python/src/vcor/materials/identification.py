@@ -298,7 +298,7 @@ def _result(
 
 
 def _of_correction(made: Any) -> dict[str, Any]:
-    """Sentence about a correction of impacts."""
+    """Fields of a result by corrected impacts: their number, and the error of the correction."""
     if not isinstance(made, Corrected):
         return {}
     return {"solved": made.solved, "fresh": made.fresh, "correction": made.error}
